@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+
+#include <plisse/base/context.h>
+#include <plisse/contact/collision_mesh.h>
+#include <plisse/linalg/newton_system.h>
+
+namespace plisse {
+
+struct ContactOptions {
+    double distance = 1e-3;  ///< m, > 0: surfaces nearer than this repel
+    double stiffness = 1e6;  ///< Pa, > 0: scale of the barrier's pressure, from the bodies' bulk modulus
+    bool self = true;        ///< whether a body meets itself (different bodies always meet)
+    double ccd_ratio = 0.1;  ///< in (0, 1): share of its distance a pair keeps in one step at least
+};
+
+/// Barrier contact of one collision mesh (C-IPC, Li et al. 2021): energy, derivatives, and the largest step that keeps
+/// all surfaces apart. Candidate pairs are kept over calls and found anew when the points have moved too far.
+/// All positions are 3 x (number of mesh vertices).
+class Contact {
+public:
+    Contact(CollisionMesh mesh, const ContactOptions& options);
+    ~Contact();
+
+    const CollisionMesh& mesh() const;
+    const ContactOptions& options() const;
+
+    /// Barrier energy, J.
+    double value(const Positions& x);
+    /// Adds dB/dx, N.
+    void add_gradient(const Positions& x, Positions& gradient);
+    /// Vertex pairs that the Hessian at x couples; pass them to NewtonSystem::begin.
+    const std::vector<Edge>& coupled_pairs(const Positions& x);
+    /// Adds the Hessian at x, projected to positive semi-definite pair by pair.
+    void add_hessian(const Positions& x, NewtonSystem& system);
+
+    /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least
+    /// options.ccd_ratio of its distance at x, at every moment of the motion. Never an overestimate.
+    double max_step(const Positions& x, const Positions& d);
+
+    /// Smallest distance, m, over pairs that are not neighbours on the mesh and not near at rest, looked for within
+    /// the contact distance only; infinity when there is none.
+    double min_gap(const Positions& x);
+
+    /// Whether any pair is active at x.
+    int active_pair_count(const Positions& x);
+
+    /// Broad phase, CCD and evaluation seconds are added here; may be null.
+    void set_times(PhaseTimes* times);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace plisse

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <plisse/base/context.h>
+#include <plisse/decimate/hierarchy.h>
+
+namespace plisse {
+
+/// One saved state.
+struct Frame {
+    int level = 0;
+    int number = 0; ///< of this level, from 0
+    double t = 0;   ///< s
+    std::string phase; ///< preview | settle | refine | final
+    const Positions* positions = nullptr; ///< of the level's vertices
+};
+
+/// One Newton iteration, for the log.
+struct IterationRecord {
+    int level = 0, step = 0, iteration = 0;
+    double t = 0, energy = 0, step_norm = 0, gap = 0, seconds = 0, step_length = 0;
+};
+
+struct EnergyParts {
+    double elastic = 0, contact = 0, friction = 0, gravity = 0;
+};
+
+/// What became of one level; the fields of report.json's "levels".
+struct LevelReport {
+    int level = 0, vertices = 0, faces = 0, steps = 0, newton_iterations = 0;
+    bool equilibrium = false;
+    double min_gap = 0;     ///< m; infinity where no pair is in contact range
+    double max_stretch = 1; ///< largest principal stretch
+    double residual = 0;    ///< largest nodal force of the total over the largest of any one term
+    EnergyParts energy;
+    PhaseTimes seconds;
+    double total_seconds = 0;
+};
+
+struct RefinementReport {
+    int from = 0, to = 0, expansions = 0, colors = 0, first_try = 0, sampled = 0, relaxed = 0, deferred = 0;
+    double min_gap = 0;
+    double total_seconds = 0;
+};
+
+struct Reaction {
+    std::string name;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); ///< N and N m about the origin
+};
+
+/// A handle or obstacle that did not reach its scripted place.
+struct Lag {
+    std::string name;
+    int vertices = 0;
+    double distance = 0; ///< m, the largest
+};
+
+enum class RunStatus { running, converged, not_converged, interrupted, failed };
+const char* run_status_name(RunStatus status);
+
+/// The whole of a run; the fields of report.json.
+struct RunReport {
+    std::string name, method, message;
+    RunStatus status = RunStatus::running;
+    double wall_seconds = 0;
+    int intersecting_pairs = 0;
+    std::vector<LevelReport> levels;
+    std::vector<RefinementReport> refinements;
+    std::vector<Reaction> reactions;
+    std::vector<Lag> lagging;
+};
+
+/// Everything needed to go on with a run after the last completed step. A refinement counts as one step.
+struct Checkpoint {
+    int level = 0;
+    int step = 0;        ///< steps of the timeline done
+    int settle_step = 0; ///< settling steps done on this level
+    double t = 0;        ///< s
+    Positions positions; ///< of the level's vertices, exact
+    Positions velocity;  ///< m/s, of the same vertices, when dynamics is on; else empty
+    std::vector<int> frame_numbers; ///< next frame number per level
+    RunReport report;
+};
+
+/// Receives what a run produces, as it produces it. The drivers write nothing themselves.
+class Recorder {
+public:
+    virtual ~Recorder() = default;
+    virtual void on_hierarchy(const Hierarchy&) {}
+    virtual void on_iteration(const IterationRecord&) {}
+    virtual void on_frame(const Frame&) {}
+    /// After every completed step, and at the end.
+    virtual void on_checkpoint(const Checkpoint&) {}
+    virtual void on_report(const RunReport&) {}
+};
+
+} // namespace plisse

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <plisse/mesh/triangle_mesh.h>
+#include <plisse/model/track.h>
+
+namespace plisse {
+
+/// An isotropic shell material.
+struct Material {
+    double density = 472.6;        ///< kg/m^3 of solid, > 0
+    double youngs_modulus = 8e5;   ///< Pa, > 0
+    double poisson_ratio = 0.243;  ///< in (-1, 0.5)
+    double thickness = 3e-4;       ///< m, > 0
+    double bending_scale = 1;      ///< c of DESIGN.md section 4, >= 0
+};
+
+/// Half-open range of vertices or faces of the model's mesh.
+struct Range {
+    int begin = 0, end = 0;
+    int size() const { return end - begin; }
+    bool contains(int i) const { return begin <= i && i < end; }
+};
+
+struct Body {
+    std::string name;
+    Range vertices, faces;
+    Material material;
+    Track<double> pressure{0.0}; ///< Pa; outward of a closed body whichever way its faces turn, else along face normals
+    bool flat_rest_angles = false; ///< lengths as given, no rest curvature
+};
+
+struct Obstacle {
+    std::string name;
+    Range vertices, faces;
+    MotionTrack motion;
+    bool progressive = true; ///< decimated and refined with the hierarchy
+};
+
+/// Vertices of one body whose positions are prescribed in some axes.
+struct Handle {
+    std::string name;
+    int body = 0;
+    std::vector<int> vertices;            ///< of the model's mesh, ascending
+    std::array<bool, 3> axes{true, true, true};
+    MotionTrack motion;
+};
+
+/// A dead load on some vertices of a body.
+struct Load {
+    enum class Kind { force, traction }; ///< N in all, shared out by area | Pa per rest area
+    Kind kind = Kind::force;
+    int body = 0;
+    std::vector<int> vertices; ///< of the model's mesh, ascending
+    Track<Vec3> value{Vec3::Zero()};
+};
+
+struct ContactSettings {
+    double distance = 1e-3; ///< m, > 0
+    bool self = true;
+};
+
+enum class ProlongationOperator { shell, intrinsic };
+enum class BendingOn { finest, level };
+enum class Curvature { automatic, own, galerkin };
+enum class GradientKind { exact, lagged };
+enum class Method { progressive, direct };
+
+struct HierarchySettings {
+    int levels = 3; ///< meshes, >= 1
+    int coarsest_vertices = 500;
+    ProlongationOperator prolongation = ProlongationOperator::shell;
+    BendingOn bending_on = BendingOn::finest;
+};
+
+struct SolveSettings {
+    Method method = Method::progressive;
+    std::optional<int> level;  ///< `direct` on this level's own mesh; the finest when empty
+    double time_step = 0.1;    ///< s, > 0
+    double duration = 0;       ///< s, >= 0
+    bool settle = true;
+    int max_settle_steps = 200;
+    double tolerance = 1e-3;   ///< m/s
+    /// Newton iterations after which a step is cut short. Empty: 20 on preview levels, 1000 on the finest and in direct.
+    std::optional<int> max_iterations_per_step;
+    double frame_interval = 0.1; ///< s of the timeline, > 0
+    Curvature curvature = Curvature::automatic;
+    GradientKind gradient = GradientKind::exact;
+    bool dynamics = false;
+};
+
+/// Everything a run needs: all bodies, then all obstacles, in one mesh, with loads, scripts and settings.
+struct Model {
+    std::string name;
+    TriangleMesh mesh; ///< rest positions of bodies, positions at t = 0 of obstacles (before their motion)
+    Positions start;   ///< positions to start from; equals mesh.positions where nothing else was asked for
+    std::vector<Body> bodies;
+    std::vector<Obstacle> obstacles;
+    std::vector<Handle> handles;
+    std::vector<Load> loads;
+    Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
+    ContactSettings contact;
+    HierarchySettings hierarchy;
+    SolveSettings solve;
+
+    /// Number of the body or obstacle (after the bodies) of each vertex.
+    std::vector<int> vertex_parts() const;
+    std::vector<int> face_parts() const;
+    int part_count() const { return static_cast<int>(bodies.size() + obstacles.size()); }
+    bool is_obstacle(int part) const { return part >= static_cast<int>(bodies.size()); }
+};
+
+} // namespace plisse
