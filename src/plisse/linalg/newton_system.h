@@ -43,7 +43,7 @@ public:
     /// Adds block (i, j), i >= j, and by symmetry its transpose at (j, i).
     void add_block(int i, int j, const Mat3& block);
 
-    /// Rows of H u for the free unknowns (3 per vertex, zero where prescribed).
+    /// H u over all unknowns, 3 per vertex.
     const VecX& coupling() const { return coupling_; }
 
     /// Lower triangle in compressed columns of blocks: rows of column c are block_rows[column_starts[c] ...), ascending,
@@ -59,9 +59,12 @@ public:
     VecX scatter(const VecX& rows) const;
 
 private:
-    void build_pattern(std::span<const Edge> extra_pairs);
-    std::vector<std::uint64_t> new_keys(std::span<const Edge> pairs) const;
+    void reserve_pattern(std::span<const Edge> extra_pairs);
+    std::vector<std::uint64_t> pattern_keys() const;
+    void set_pattern(const std::vector<std::uint64_t>& keys);
     int find_block(int row, int column) const;
+    double* block_values(int column, int block);
+    int column_stride(int column) const;
 
     std::vector<std::uint8_t> prescribed_;
     std::vector<int> row_of_vertex_; ///< -1 where all three axes are prescribed
