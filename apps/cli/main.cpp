@@ -1,0 +1,60 @@
+#include <fmt/core.h>
+
+#include <plisse/base/error.h>
+
+#include "exit_status.h"
+#include "later_commands.h"
+
+namespace {
+
+using plisse::ExitCode;
+
+/// Prints the one error line the contract promises.
+ExitCode complain(const std::string& sentence, ExitCode code) {
+    fmt::print(stderr, "plisse: error: {}\n", sentence);
+    return code;
+}
+
+ExitCode complain_about_arguments(const CLI::App& app, const CLI::ParseError& error) {
+    std::string help = "plisse";
+    for (const CLI::App* command : app.get_subcommands())
+        help += " " + command->get_name();
+    return complain(fmt::format("command line: {}; `{} --help` lists what can be given", error.what(), help),
+                    ExitCode::unusable);
+}
+
+void add_commands(CLI::App& app) {
+    plisse::add_later_commands(app);
+}
+
+ExitCode run_program(int argc, char** argv) {
+    CLI::App app("plisse: progressive equilibria of thin shells and cloth in contact", "plisse");
+    app.set_version_flag("--version", PLISSE_VERSION);
+    app.require_subcommand(1);
+    add_commands(app);
+    try {
+        app.parse(argc, argv);
+        return ExitCode::done;
+    } catch (const CLI::Success& help_or_version) {
+        app.exit(help_or_version);
+        return ExitCode::done;
+    } catch (const CLI::ParseError& error) {
+        return complain_about_arguments(app, error);
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    ExitCode code = ExitCode::done;
+    try {
+        code = run_program(argc, argv);
+    } catch (const plisse::ExitStatus& status) {
+        code = status.code;
+    } catch (const plisse::InputError& error) {
+        code = complain(error.what(), ExitCode::unusable);
+    } catch (const std::exception& error) {
+        code = complain(error.what(), ExitCode::failed);
+    }
+    return static_cast<int>(code);
+}
