@@ -11,6 +11,8 @@ function(plisse_folder name)
   target_include_directories(plisse_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_compile_features(plisse_${name} PUBLIC cxx_std_20)
+  # Eigen's alignment follows the processor flags; users of the library must agree with it.
+  target_compile_definitions(plisse_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=32)
   target_link_libraries(plisse_${name} PUBLIC ${FOLDER_LINKS} PRIVATE $<BUILD_INTERFACE:plisse_compiler> ${FOLDER_PRIVATE_LINKS})
   set_property(GLOBAL APPEND PROPERTY PLISSE_FOLDERS plisse_${name})
 endfunction()

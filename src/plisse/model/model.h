@@ -7,6 +7,7 @@
 
 #include <plisse/mesh/triangle_mesh.h>
 #include <plisse/model/track.h>
+#include <plisse/transfer/prolongation.h>
 
 namespace plisse {
 
@@ -64,7 +65,7 @@ struct ContactSettings {
     bool self = true;
 };
 
-enum class ProlongationOperator { shell, intrinsic };
+
 enum class BendingOn { finest, level };
 enum class Curvature { automatic, own, galerkin };
 enum class GradientKind { exact, lagged };

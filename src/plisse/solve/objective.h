@@ -1,0 +1,28 @@
+#pragma once
+
+#include <plisse/linalg/newton_system.h>
+
+namespace plisse {
+
+/// What a solver minimises: a function of 3n unknowns, some of which are prescribed and on their way to given targets.
+/// The solver knows of nothing else. Calls at the same x may share work, so x is passed by value identity.
+class Objective {
+public:
+    virtual ~Objective() = default;
+
+    /// Value at x; +infinity where x is not feasible.
+    virtual double value(const VecX& x) = 0;
+    virtual void gradient(const VecX& x, VecX& gradient) = 0;
+    /// Fills the system (between begin and the last add) with a positive semi-definite approximation of the Hessian at x.
+    virtual void assemble(const VecX& x, NewtonSystem& system) = 0;
+    /// The matrix the solver works on; it says which unknowns are prescribed.
+    virtual NewtonSystem& system() = 0;
+    /// Targets of the prescribed unknowns; other entries mean nothing.
+    virtual const VecX& targets() const = 0;
+    /// Largest alpha in [0, 1] for which the whole way from x to x + alpha d is feasible.
+    virtual double max_step(const VecX& x, const VecX& d) = 0;
+    /// Called with every accepted x.
+    virtual void on_accepted(const VecX&) {}
+};
+
+} // namespace plisse
