@@ -13,9 +13,9 @@ namespace plisse {
 bool faces_intersect(const ConstPositions& positions, const Face& a, const Face& b);
 
 /// All intersecting pairs (a < b) of faces, ascending. Pairs for which skip(a, b) is true are left out (such as two
-/// obstacles); skip may be empty. At most `most` pairs are returned (the count then is a lower bound).
+/// obstacles); skip may be empty and is called from several threads. At most `most` pairs are returned (the count then
+/// is a lower bound).
 std::vector<std::array<int, 2>> intersecting_pairs(const ConstPositions& positions, std::span<const Face> faces,
-                                                   const std::function<bool(int, int)>& skip = {},
-                                                   int most = 1 << 30);
+                                                   const std::function<bool(int, int)>& skip = {}, int most = 1 << 30);
 
 } // namespace plisse
