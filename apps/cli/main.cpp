@@ -4,6 +4,7 @@
 
 #include "exit_status.h"
 #include "later_commands.h"
+#include "schema_command.h"
 
 namespace {
 
