@@ -25,7 +25,7 @@ struct IterationRecord {
 };
 
 struct EnergyParts {
-    double elastic = 0, contact = 0, friction = 0, gravity = 0;
+    double elastic = 0, contact = 0, friction = 0, gravity = 0, loads = 0; ///< J
 };
 
 /// What became of one level; the fields of report.json's "levels".
@@ -78,6 +78,9 @@ struct Checkpoint {
     int level = 0;
     int step = 0;        ///< steps of the timeline done
     int settle_step = 0; ///< settling steps done on this level
+    double settle_time_step = 0; ///< s, of the next settling step
+    double settle_tolerance = 0; ///< m/s, of the next settling step
+    bool settled = false;        ///< this level is done
     double t = 0;        ///< s
     Positions positions; ///< of the level's vertices, exact
     Positions velocity;  ///< m/s, of the same vertices, when dynamics is on; else empty

@@ -147,6 +147,11 @@ bool SparseCholesky::factorize(const NewtonSystem& system, double shift) {
     return s.common.status == CHOLMOD_OK;
 }
 
+void SparseCholesky::reset() {
+    state_->order.clear();
+    state_->pattern_version = -1;
+}
+
 VecX SparseCholesky::solve(const VecX& right_hand_side) {
     State& s = *state_;
     if (right_hand_side.size() == 0)

@@ -18,6 +18,9 @@ public:
     /// Factorises H + shift I. False when that is not positive definite.
     bool factorize(const NewtonSystem& system, double shift = 0);
 
+    /// Forgets the ordering, so that what follows does not depend on what came before.
+    void reset();
+
     /// Solves for the rows of the system (3 per row; see NewtonSystem::gather). Needs a successful factorize.
     VecX solve(const VecX& right_hand_side);
 

@@ -65,6 +65,11 @@ void NewtonSystem::begin(std::span<const Edge> extra_pairs) {
     }
 }
 
+void NewtonSystem::reset_pattern() {
+    if (block_rows_.size() > base_block_count_)
+        set_pattern(base_keys_);
+}
+
 void NewtonSystem::reserve_pattern(std::span<const Edge> extra_pairs) {
     std::vector<std::uint64_t> needed;
     bool complete = true;

@@ -31,6 +31,9 @@ public:
     /// is new, and is pruned back when too little of it is used; either raises pattern_version().
     void begin(std::span<const Edge> extra_pairs);
 
+    /// Drops what extra pairs have added to the pattern, so that what follows does not depend on what came before.
+    void reset_pattern();
+
     /// Adds an element's matrix (3k x 3k, symmetric) over its k distinct vertices.
     template <typename Derived>
     void add(std::span<const int> vertices, const Eigen::MatrixBase<Derived>& element) {

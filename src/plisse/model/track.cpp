@@ -18,4 +18,9 @@ Vec3 MotionTrack::apply(const Vec3& point, double t) const {
     return rotation_xyz(rotate_deg.at(t)) * (point - pivot) + pivot + translate.at(t);
 }
 
+Vec3 MotionTrack::undo(const Vec3& point, double t) const {
+    const Vec3 pivot = about.at(t);
+    return rotation_xyz(rotate_deg.at(t)).transpose() * (point - pivot - translate.at(t)) + pivot;
+}
+
 } // namespace plisse

@@ -42,6 +42,8 @@ struct MotionTrack {
     Track<Vec3> about{Vec3::Zero()}; ///< m, world coordinates
 
     Vec3 apply(const Vec3& point, double t) const;
+    /// The inverse of apply at the same time.
+    Vec3 undo(const Vec3& point, double t) const;
 };
 
 /// Rotation by angles in degrees about x, then y, then z (fixed axes).

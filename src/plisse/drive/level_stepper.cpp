@@ -1,0 +1,173 @@
+#include <plisse/drive/level_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace plisse {
+
+namespace {
+
+constexpr double largest_residual = 1e-3; // of the largest nodal force of any one term (CONTRACT.md)
+constexpr int preview_iteration_cap = 20;
+constexpr int final_iteration_cap = 1000;
+
+LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
+    switch (summary.end) {
+    case NewtonEnd::converged:
+        return LevelStepper::Outcome::done;
+    case NewtonEnd::iteration_cap:
+        return LevelStepper::Outcome::cut_short;
+    case NewtonEnd::stalled:
+        return LevelStepper::Outcome::stalled;
+    case NewtonEnd::cancelled:
+        break;
+    }
+    return LevelStepper::Outcome::cancelled;
+}
+
+int timeline_steps(double duration, double h) { return static_cast<int>(std::ceil(duration / h - 1e-9)); }
+
+} // namespace
+
+LevelStepper::LevelStepper(const Discretization& discretization, int level, EnergiesOf energies_of, bool is_last,
+                           RunLog& log)
+    : discretization_(discretization), settings_(discretization.model().solve), level_(level), is_last_(is_last),
+      log_(log), problem_(discretization, level, energies_of, log.context()), times_at_start_(log.context().times) {
+    progress_.level = level;
+    progress_.settle_time_step = settings_.time_step;
+    progress_.settle_tolerance = settings_.tolerance;
+}
+
+int LevelStepper::iteration_cap() const {
+    return settings_.max_iterations_per_step.value_or(is_last_ ? final_iteration_cap : preview_iteration_cap);
+}
+
+NewtonSummary LevelStepper::step(double t, double h, double tolerance, const VecX& anchor, const char* phase) {
+    // Forgetting the ordering here makes a resumed run take the same steps, to the bit, as an uninterrupted one.
+    cholesky_.reset();
+    problem_.begin_step(as_positions(x_), as_positions(anchor), t, h);
+    NewtonOptions options;
+    options.tolerance = tolerance * settings_.time_step;
+    options.max_iterations = iteration_cap();
+    LevelReport& report = log_.level_report(level_);
+    Progress shown;
+    shown.level = level_;
+    shown.level_count = discretization_.finest() + 1;
+    shown.phase = phase;
+    shown.time = t;
+    shown.duration = settings_.duration;
+    shown.step = report.steps + 1;
+    const double steps = timeline_steps(settings_.duration, settings_.time_step);
+    shown.fraction = steps > 0 ? std::min(1.0, progress_.step / steps) : 1.0;
+    const NewtonSummary summary =
+        minimize(problem_, cholesky_, x_, options, log_.context(), [&](const NewtonIteration& iteration) {
+            shown.iteration = iteration.iteration;
+            shown.step_norm = iteration.step_norm / settings_.time_step;
+            shown.gap = problem_.min_gap(x_);
+            log_.context().on_progress(shown);
+            log_.iteration({level_, shown.step, iteration.iteration, t, iteration.value, shown.step_norm, shown.gap,
+                            log_.seconds(), iteration.step_length});
+        });
+    ++report.steps;
+    report.newton_iterations += summary.iterations;
+    if (summary.end == NewtonEnd::stalled)
+        log_.context().on_message(fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message));
+    return summary;
+}
+
+LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
+    const double h = settings_.time_step;
+    const int steps = timeline_steps(duration, h);
+    Outcome worst = Outcome::done;
+    if (progress_.step == 0)
+        log_.frame(level_, 0, "preview", positions());
+    while (progress_.step < steps) {
+        const double t_before = std::min(progress_.step * h, duration);
+        const double t = std::min((progress_.step + 1) * h, duration);
+        const VecX before = x_;
+        VecX anchor = x_;
+        if (settings_.dynamics && progress_.velocity.cols() > 0)
+            anchor += h * as_vector(progress_.velocity);
+        const NewtonSummary summary = step(t, h, settings_.tolerance, anchor, "preview");
+        if (summary.end == NewtonEnd::cancelled) {
+            x_ = before;
+            return Outcome::cancelled;
+        }
+        if (settings_.dynamics)
+            progress_.velocity = as_positions(VecX((x_ - before) / h));
+        worst = std::max(worst, outcome_of(summary));
+        ++progress_.step;
+        const double interval = settings_.frame_interval;
+        if (std::floor(t / interval + 1e-9) > std::floor(t_before / interval + 1e-9) || progress_.step == steps)
+            log_.frame(level_, t, "preview", positions());
+        save_checkpoint(t);
+    }
+    return worst;
+}
+
+LevelStepper::Outcome LevelStepper::step_once(double t) {
+    const VecX before = x_;
+    const NewtonSummary summary = step(t, settings_.time_step, settings_.tolerance, x_, is_last_ ? "final" : "refine");
+    if (summary.end == NewtonEnd::cancelled)
+        x_ = before;
+    return outcome_of(summary);
+}
+
+LevelStepper::Outcome LevelStepper::settle(double t) {
+    LevelReport& report = log_.level_report(level_);
+    constexpr double largest_growth = 1e3;
+    while (progress_.settle_step < settings_.max_settle_steps) {
+        const VecX before = x_;
+        const double h = progress_.settle_time_step;
+        const NewtonSummary summary = step(t, h, progress_.settle_tolerance, x_, "settle");
+        if (summary.end == NewtonEnd::cancelled) {
+            x_ = before;
+            return Outcome::cancelled;
+        }
+        ++progress_.settle_step;
+        const bool at_rest = summary.end == NewtonEnd::converged && summary.iterations == 0;
+        if (at_rest && problem_.residual(x_) <= largest_residual) {
+            report.equilibrium = true;
+            return Outcome::done;
+        }
+        if (at_rest)
+            progress_.settle_tolerance *= 0.1;
+        if (summary.end == NewtonEnd::stalled)
+            progress_.settle_time_step = std::max(0.1 * h, 1e-3 * settings_.time_step);
+        else if (summary.iterations <= iteration_cap() / 2)
+            progress_.settle_time_step = std::min(2 * h, largest_growth * settings_.time_step);
+        save_checkpoint(t);
+    }
+    return Outcome::cut_short;
+}
+
+void LevelStepper::save_checkpoint(double t) {
+    progress_.t = t;
+    progress_.positions = positions();
+    measure();
+    log_.checkpoint(progress_);
+}
+
+void LevelStepper::measure() {
+    LevelReport& report = log_.level_report(level_);
+    const EnergyBreakdown energies = problem_.energies(x_);
+    report.energy = {energies.elastic, energies.contact, 0, energies.gravity, energies.loads};
+    report.residual = problem_.residual(x_);
+    report.min_gap = problem_.min_gap(x_);
+    report.max_stretch = problem_.max_stretch(x_);
+    PhaseTimes& now = log_.context().times;
+    report.total_seconds += watch_.seconds();
+    watch_ = Stopwatch();
+    double known = 0;
+    for (int p = 0; p < phase_count; ++p) {
+        const auto phase = static_cast<std::size_t>(p);
+        report.seconds.seconds[phase] += now.seconds[phase] - times_at_start_.seconds[phase];
+        known += report.seconds.seconds[phase];
+    }
+    times_at_start_ = now;
+    report.seconds[Phase::other] += std::max(0.0, report.total_seconds - known);
+}
+
+} // namespace plisse

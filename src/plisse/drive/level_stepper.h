@@ -1,0 +1,54 @@
+#pragma once
+
+#include <plisse/drive/run_log.h>
+#include <plisse/solve/newton.h>
+
+namespace plisse {
+
+/// Steps one level: through the timeline (PSQ algorithm 1) and, with parameters held, to equilibrium.
+class LevelStepper {
+public:
+    enum class Outcome { done, cut_short, stalled, cancelled };
+
+    /// is_last: this level's result is the run's, so its steps may not be cut short unless the scene says so.
+    LevelStepper(const Discretization& discretization, int level, EnergiesOf energies_of, bool is_last, RunLog& log);
+
+    void set_positions(const Positions& x) { x_ = as_vector(x); }
+    Positions positions() const { return as_positions(x_); }
+    Checkpoint& progress() { return progress_; }
+
+    /// Runs the timeline from progress().step on, saving frames and checkpoints. `done` when no step failed.
+    Outcome run_timeline(double duration);
+
+    /// Steps at time t until equilibrium (CONTRACT.md, "A state is at equilibrium when"), with time steps that grow as
+    /// long as the solver copes: they only regularise. `cut_short` when max_settle_steps were not enough.
+    Outcome settle(double t);
+
+    /// One step at time t, as a level gets that is not to settle.
+    Outcome step_once(double t);
+
+    /// Brings the level's part of the report up to date.
+    void measure();
+
+    ShellProblem& problem() { return problem_; }
+    const VecX& unknowns() const { return x_; }
+
+private:
+    NewtonSummary step(double t, double h, double tolerance, const VecX& anchor, const char* phase);
+    void save_checkpoint(double t);
+    int iteration_cap() const;
+
+    const Discretization& discretization_;
+    const SolveSettings& settings_;
+    int level_;
+    bool is_last_;
+    RunLog& log_;
+    ShellProblem problem_;
+    SparseCholesky cholesky_;
+    VecX x_;
+    Checkpoint progress_;
+    PhaseTimes times_at_start_;
+    Stopwatch watch_;
+};
+
+} // namespace plisse

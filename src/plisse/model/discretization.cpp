@@ -1,0 +1,203 @@
+#include <plisse/model/discretization.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include <plisse/base/error.h>
+#include <plisse/linalg/cholesky.h>
+#include <plisse/mesh/connectivity.h>
+#include <plisse/spatial/intersections.h>
+
+#include <fmt/format.h>
+
+namespace plisse {
+
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+/// Positions at rest with every obstacle where its script has it at t = 0.
+Positions posed_rest(const Model& model) {
+    Positions rest = model.mesh.positions;
+    for (const Obstacle& obstacle : model.obstacles)
+        for (int v = obstacle.vertices.begin; v < obstacle.vertices.end; ++v)
+            rest.col(v) = obstacle.motion.apply(model.mesh.positions.col(v), 0);
+    return rest;
+}
+
+/// Label of each vertex (-1: no handle) and the handles behind each label: vertices of one label may merge.
+std::vector<int> label_handles(const Model& model, std::vector<std::vector<int>>& handles_of_label) {
+    std::vector<std::vector<int>> handles_of_vertex(at(model.mesh.vertex_count()));
+    for (std::size_t h = 0; h < model.handles.size(); ++h)
+        for (int v : model.handles[h].vertices)
+            handles_of_vertex[at(v)].push_back(static_cast<int>(h));
+    std::map<std::vector<int>, int> label_of;
+    std::vector<int> labels(at(model.mesh.vertex_count()), -1);
+    for (std::size_t v = 0; v < labels.size(); ++v) {
+        if (handles_of_vertex[v].empty())
+            continue;
+        const auto [entry, fresh] =
+            label_of.try_emplace(handles_of_vertex[v], static_cast<int>(handles_of_label.size()));
+        if (fresh)
+            handles_of_label.push_back(handles_of_vertex[v]);
+        labels[v] = entry->second;
+    }
+    return labels;
+}
+
+Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::vector<int>& labels, int level_count,
+                          Context& context) {
+    const std::vector<int> part = model.vertex_parts();
+    std::vector<std::uint8_t> frozen(at(model.part_count()), 0);
+    DecimationOptions options;
+    options.levels = level_count;
+    options.coarsest_vertices = model.hierarchy.coarsest_vertices;
+    options.obstacle_part.assign(at(model.part_count()), 0);
+    for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
+        options.obstacle_part[model.bodies.size() + o] = 1;
+        frozen[model.bodies.size() + o] = !model.obstacles[o].progressive;
+    }
+    DecimationSummary summary;
+    Hierarchy hierarchy = decimate({rest, model.mesh.faces, part, labels, frozen}, options, &context, &summary);
+    if (summary.ran_dry)
+        context.on_message(fmt::format("the coarsest level has {} vertices, not the {} asked for: no further edge can be "
+                                       "collapsed without harm to the shape",
+                                       summary.reached_vertices.front(), summary.wanted_vertices.front()));
+    return hierarchy;
+}
+
+} // namespace
+
+Discretization::Discretization(const Model& model, int level_count, Context& context) : model_(model) {
+    const std::vector<int> labels = label_handles(model_, handles_of_label_);
+    hierarchy_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context);
+    layouts_.resize(hierarchy_.levels.size());
+    for (int level = 0; level <= finest(); ++level)
+        lay_out(level);
+}
+
+void Discretization::lay_out(int level) {
+    const HierarchyLevel& mesh_of_level = mesh(level);
+    LevelLayout& layout = layouts_[at(level)];
+    const auto vertices = at(static_cast<int>(mesh_of_level.rest.cols()));
+    std::vector<std::uint8_t> used(vertices, 0);
+    for (const Face& face : mesh_of_level.faces) {
+        const int part = mesh_of_level.part[at(face[0])];
+        layout.face_part.push_back(part);
+        for (int v : face)
+            used[at(v)] = 1;
+        if (model_.is_obstacle(part))
+            continue;
+        layout.body_faces.push_back(face);
+        layout.body_face_part.push_back(part);
+    }
+
+    using Key = std::tuple<int, int, double, double, double>;
+    std::map<Key, int> finest_at;
+    const HierarchyLevel& fine = hierarchy_.finest();
+    for (int v = 0; v < fine.rest.cols(); ++v)
+        if (fine.label[at(v)] >= 0)
+            finest_at.try_emplace({fine.part[at(v)], fine.label[at(v)], fine.rest(0, v), fine.rest(1, v), fine.rest(2, v)},
+                                  v);
+    layout.source.assign(vertices, -1);
+    layout.prescribed.assign(3 * vertices, 0);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const int column = static_cast<int>(v);
+        if (!used[v] || model_.is_obstacle(mesh_of_level.part[v]))
+            std::fill_n(layout.prescribed.begin() + 3 * column, 3, std::uint8_t{1});
+        if (mesh_of_level.label[v] < 0)
+            continue;
+        const auto& p = mesh_of_level.rest;
+        layout.source[v] = finest_at.at(
+            {mesh_of_level.part[v], mesh_of_level.label[v], p(0, column), p(1, column), p(2, column)});
+        for (int h : handles_of(level, column))
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                layout.prescribed[3 * v + axis] |= model_.handles[at(h)].axes[axis];
+    }
+}
+
+const std::vector<int>& Discretization::handles_of(int level, int vertex) const {
+    const int label = mesh(level).label[at(vertex)];
+    return label < 0 ? no_handles_ : handles_of_label_[at(label)];
+}
+
+Positions Discretization::script(int level, double t) const {
+    const HierarchyLevel& mesh_of_level = mesh(level);
+    Positions targets = mesh_of_level.rest;
+    for (int v = 0; v < targets.cols(); ++v) {
+        const int part = mesh_of_level.part[at(v)];
+        if (model_.is_obstacle(part)) {
+            const MotionTrack& motion = model_.obstacles[at(part) - model_.bodies.size()].motion;
+            targets.col(v) = motion.apply(motion.undo(mesh_of_level.rest.col(v), 0), t);
+        }
+        for (int h : handles_of(level, v)) {
+            const Handle& handle = model_.handles[at(h)];
+            const Vec3 target = handle.motion.apply(model_.start.col(layout(level).source[at(v)]), t);
+            for (int axis = 0; axis < 3; ++axis)
+                if (handle.axes[at(axis)])
+                    targets(axis, v) = target[axis];
+        }
+    }
+    return targets;
+}
+
+Positions Discretization::start(int level) const {
+    const Range bodies{0, model_.bodies.empty() ? 0 : model_.bodies.back().vertices.end};
+    const bool starts_at_rest =
+        model_.start.leftCols(bodies.end) == model_.mesh.positions.leftCols(bodies.end);
+    if (starts_at_rest)
+        return mesh(level).rest;
+    if (level == finest()) {
+        Positions x = mesh(level).rest;
+        x.leftCols(bodies.end) = model_.start.leftCols(bodies.end);
+        return x;
+    }
+    return restricted_start(level);
+}
+
+// Least squares for the anchors, min sum_i |U x + a(x) - start_i|^2 with a held, repeated: a handful of rounds settles
+// the offsets.
+Positions Discretization::restricted_start(int level) const {
+    const HierarchyLevel& coarse = mesh(level);
+    const Positions target = start(finest());
+    const Prolongation prolongation(coarse.rest, coarse.faces, coarse.to_finest, hierarchy_.finest().rest);
+    std::vector<std::uint8_t> fixed = layout(level).prescribed;
+    Positions x = coarse.rest;
+    for (std::size_t v = 0; v < coarse.label.size(); ++v)
+        if (coarse.label[v] >= 0) {
+            x.col(static_cast<int>(v)) = model_.start.col(layout(level).source[v]);
+            std::fill_n(fixed.begin() + 3 * static_cast<std::ptrdiff_t>(v), 3, std::uint8_t{1});
+        }
+    const Connectivity connectivity(static_cast<int>(x.cols()), coarse.faces);
+    NewtonSystem system(fixed, connectivity.edges());
+    SparseCholesky cholesky;
+    system.begin({});
+    for (const Anchor& anchor : coarse.to_finest) {
+        if (anchor.face < 0)
+            continue;
+        const Face& face = coarse.faces[at(anchor.face)];
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                if (face[at(i)] >= face[at(j)])
+                    system.add_block(face[at(i)], face[at(j)],
+                                     anchor.weights[i] * anchor.weights[j] * Mat3::Identity());
+    }
+    if (!cholesky.factorize(system))
+        cholesky.factorize(system, 1e-9);
+    for (int round = 0; round < 8; ++round) {
+        const Positions residual = target - prolongation.apply(x);
+        const VecX step = system.scatter(
+            cholesky.solve(system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
+        x += as_positions(step);
+    }
+    const auto skip = [&](int a, int b) {
+        return model_.is_obstacle(layout(level).face_part[at(a)]) && model_.is_obstacle(layout(level).face_part[at(b)]);
+    };
+    if (!intersecting_pairs(x, coarse.faces, skip, 1).empty())
+        throw InputError(model_.name, fmt::format("the start shape intersects itself when carried to level {}", level),
+                         "use fewer levels, more coarsest_vertices, or method `direct`");
+    return x;
+}
+
+} // namespace plisse

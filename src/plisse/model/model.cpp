@@ -1,0 +1,33 @@
+#include <plisse/model/model.h>
+
+namespace plisse {
+
+namespace {
+
+template <typename RangeOf>
+std::vector<int> numbered_parts(const Model& model, int count, const RangeOf& range_of) {
+    std::vector<int> parts(static_cast<std::size_t>(count), -1);
+    int number = 0;
+    const auto fill = [&](const Range& range) {
+        for (int i = range.begin; i < range.end; ++i)
+            parts[static_cast<std::size_t>(i)] = number;
+        ++number;
+    };
+    for (const Body& body : model.bodies)
+        fill(range_of(body));
+    for (const Obstacle& obstacle : model.obstacles)
+        fill(range_of(obstacle));
+    return parts;
+}
+
+} // namespace
+
+std::vector<int> Model::vertex_parts() const {
+    return numbered_parts(*this, mesh.vertex_count(), [](const auto& part) { return part.vertices; });
+}
+
+std::vector<int> Model::face_parts() const {
+    return numbered_parts(*this, mesh.face_count(), [](const auto& part) { return part.faces; });
+}
+
+} // namespace plisse

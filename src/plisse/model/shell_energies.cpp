@@ -1,0 +1,138 @@
+#include <plisse/model/shell_energies.h>
+
+#include <algorithm>
+
+#include <plisse/mesh/connectivity.h>
+
+namespace plisse {
+
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+std::unique_ptr<MembraneEnergy> make_membrane(const Model& model, const Positions& rest, const std::vector<Face>& faces,
+                                              const std::vector<int>& face_body) {
+    MembraneMaterials materials;
+    for (int body : face_body) {
+        const Material& material = model.bodies[at(body)].material;
+        const Lame lame = plane_stress_lame(material.youngs_modulus, material.poisson_ratio);
+        materials.mu.push_back(lame.mu);
+        materials.lambda.push_back(lame.lambda);
+        materials.thickness.push_back(material.thickness);
+    }
+    return std::make_unique<MembraneEnergy>(rest, faces, std::move(materials));
+}
+
+std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& rest, const std::vector<Face>& faces,
+                                         const std::vector<int>& face_body) {
+    const Connectivity connectivity(static_cast<int>(rest.cols()), faces);
+    Hinges hinges = interior_hinges(connectivity, faces);
+    HingeMaterials materials;
+    for (const auto& sides : hinges.faces) {
+        const Body& body = model.bodies[at(face_body[at(sides[0])])];
+        const Material& material = body.material;
+        materials.scaled_rigidity.push_back(
+            material.bending_scale *
+            bending_rigidity(material.youngs_modulus, material.poisson_ratio, material.thickness));
+        materials.flat.push_back(body.flat_rest_angles);
+    }
+    return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials);
+}
+
+} // namespace
+
+ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const std::vector<Face>& faces,
+                             const std::vector<int>& face_body, Parts parts)
+    : model_(model), vertex_count_(static_cast<int>(rest.cols())) {
+    if (parts.membrane) {
+        auto membrane = make_membrane(model, rest, faces, face_body);
+        membrane_ = membrane.get();
+        add_term(std::move(membrane));
+    }
+    if (parts.bending)
+        add_term(make_hinges(model, rest, faces, face_body));
+    if (!parts.pressure)
+        return;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const auto& keys = model.bodies[b].pressure.keys;
+        if (std::all_of(keys.begin(), keys.end(), [](const auto& key) { return key.value == 0; }))
+            continue;
+        std::vector<Face> of_body;
+        for (std::size_t f = 0; f < faces.size(); ++f)
+            if (face_body[f] == static_cast<int>(b))
+                of_body.push_back(faces[f]);
+        if (!boundary_loops(Connectivity(vertex_count_, of_body), of_body).empty()) {
+            open_.push_back({static_cast<int>(b), std::move(of_body)});
+            continue;
+        }
+        auto energy = std::make_unique<PressureEnergy>(rest, std::move(of_body));
+        auto assembly = std::make_unique<ElementAssembly>(*energy, vertex_count_);
+        closed_.push_back({static_cast<int>(b), std::move(energy), std::move(assembly)});
+    }
+}
+
+void ShellEnergies::add_term(std::unique_ptr<ElementEnergy> energy) {
+    auto assembly = std::make_unique<ElementAssembly>(*energy, vertex_count_);
+    elastic_.push_back({std::move(energy), std::move(assembly)});
+}
+
+void ShellEnergies::set_time(double t) {
+    for (ClosedBody& closed : closed_)
+        closed.energy->set_pressure(model_.bodies[at(closed.body)].pressure.at(t));
+}
+
+double ShellEnergies::elastic_value(const Positions& y) const {
+    double sum = 0;
+    for (const Term& term : elastic_)
+        sum += term.assembly->value(y);
+    return sum;
+}
+
+void ShellEnergies::add_elastic_gradient(const Positions& y, Positions& gradient) const {
+    for (const Term& term : elastic_)
+        term.assembly->add_gradient(y, gradient);
+}
+
+double ShellEnergies::pressure_value(const Positions& y) const {
+    double sum = 0;
+    for (const ClosedBody& closed : closed_)
+        sum += closed.assembly->value(y);
+    return sum;
+}
+
+void ShellEnergies::add_pressure_gradient(const Positions& y, Positions& gradient) const {
+    for (const ClosedBody& closed : closed_)
+        closed.assembly->add_gradient(y, gradient);
+}
+
+void ShellEnergies::add_hessian(const Positions& y, NewtonSystem& system) const {
+    for (const Term& term : elastic_)
+        term.assembly->add_hessian(y, system);
+}
+
+std::vector<Edge> ShellEnergies::pairs() const {
+    std::vector<Edge> all;
+    for (const Term& term : elastic_) {
+        const std::vector<Edge> pairs = term.assembly->pairs();
+        all.insert(all.end(), pairs.begin(), pairs.end());
+    }
+    return all;
+}
+
+Positions ShellEnergies::open_pressure_forces(const Positions& y, double t) const {
+    Positions forces = Positions::Zero(3, y.cols());
+    for (const OpenBody& open : open_)
+        forces += pressure_forces(y, open.faces, model_.bodies[at(open.body)].pressure.at(t));
+    return forces;
+}
+
+double ShellEnergies::largest_stretch(const Positions& y) const { return membrane_ ? membrane_->largest_stretch(y) : 1; }
+
+std::vector<const ElementEnergy*> ShellEnergies::elastic_terms() const {
+    std::vector<const ElementEnergy*> terms;
+    for (const Term& term : elastic_)
+        terms.push_back(term.energy.get());
+    return terms;
+}
+
+} // namespace plisse

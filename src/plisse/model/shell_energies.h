@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <plisse/energy/assembly.h>
+#include <plisse/energy/hinge.h>
+#include <plisse/energy/membrane.h>
+#include <plisse/energy/pressure.h>
+#include <plisse/model/model.h>
+
+namespace plisse {
+
+/// The elastic energies of all bodies on one mesh, and the pressure of its closed bodies.
+class ShellEnergies {
+public:
+    struct Parts {
+        bool membrane = true;
+        bool bending = true;
+        bool pressure = true;
+    };
+
+    /// faces: of bodies only, with vertices of `rest`; face_body: the body of each.
+    ShellEnergies(const Model& model, const Positions& rest, const std::vector<Face>& faces,
+                  const std::vector<int>& face_body, Parts parts);
+
+    /// Pressures at time t.
+    void set_time(double t);
+
+    double elastic_value(const Positions& y) const;
+    void add_elastic_gradient(const Positions& y, Positions& gradient) const;
+    double pressure_value(const Positions& y) const;
+    void add_pressure_gradient(const Positions& y, Positions& gradient) const;
+    /// Projected Hessian of the elastic terms.
+    void add_hessian(const Positions& y, NewtonSystem& system) const;
+    std::vector<Edge> pairs() const;
+
+    /// Forces of pressure on open bodies with the normals of y, frozen (N per vertex).
+    Positions open_pressure_forces(const Positions& y, double t) const;
+    double largest_stretch(const Positions& y) const;
+
+    /// The elastic energies, for products with a Jacobian.
+    std::vector<const ElementEnergy*> elastic_terms() const;
+
+private:
+    struct Term {
+        std::unique_ptr<ElementEnergy> energy;
+        std::unique_ptr<ElementAssembly> assembly;
+    };
+    struct ClosedBody {
+        int body;
+        std::unique_ptr<PressureEnergy> energy;
+        std::unique_ptr<ElementAssembly> assembly;
+    };
+    struct OpenBody {
+        int body;
+        std::vector<Face> faces;
+    };
+    void add_term(std::unique_ptr<ElementEnergy> energy);
+
+    const Model& model_;
+    int vertex_count_;
+    std::vector<Term> elastic_;
+    const MembraneEnergy* membrane_ = nullptr;
+    std::vector<ClosedBody> closed_;
+    std::vector<OpenBody> open_;
+};
+
+} // namespace plisse

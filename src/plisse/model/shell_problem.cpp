@@ -1,0 +1,303 @@
+#include <plisse/model/shell_problem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <plisse/base/parallel.h>
+#include <plisse/geometry/triangle_motion.h>
+#include <plisse/spatial/box.h>
+
+namespace plisse {
+
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+constexpr int chunk_size = 512;
+
+/// Largest fraction of the motion over which no triangle comes near collapsing.
+double largest_regular_step(const std::vector<Face>& faces, const Positions& x, const Positions& d) {
+    std::vector<double> limits(at(chunk_count(static_cast<int>(faces.size()), chunk_size)), 1.0);
+    parallel_chunks(static_cast<int>(faces.size()), chunk_size, [&](int chunk, int begin, int end) {
+        double limit = 1;
+        for (int f = begin; f < end; ++f) {
+            const Face& face = faces[at(f)];
+            const Vec3 e1 = x.col(face[1]) - x.col(face[0]);
+            const Vec3 e2 = x.col(face[2]) - x.col(face[0]);
+            const Vec3 d1 = d.col(face[1]) - d.col(face[0]);
+            const Vec3 d2 = d.col(face[2]) - d.col(face[0]);
+            limit = std::min(limit, regular_step(e1, e2, d1, d2));
+        }
+        limits[at(chunk)] = limit;
+    });
+    return limits.empty() ? 1.0 : *std::min_element(limits.begin(), limits.end());
+}
+
+/// Barrier pressure scale: the largest bulk modulus E / (3 (1 - 2 nu)) of the bodies (C-IPC section 4).
+double contact_stiffness(const Model& model) {
+    double stiffness = 0;
+    for (const Body& body : model.bodies)
+        stiffness = std::max(stiffness, body.material.youngs_modulus /
+                                            (3 * (1 - 2 * std::min(body.material.poisson_ratio, 0.45))));
+    return stiffness;
+}
+
+double largest_norm(const Positions& forces) {
+    return forces.cols() ? forces.colwise().norm().maxCoeff() : 0.0;
+}
+
+} // namespace
+
+struct ShellProblem::Carrier {
+    Prolongation prolongation;
+    std::vector<GalerkinProduct> products; ///< one per elastic term
+};
+
+ShellProblem::ShellProblem(const Discretization& discretization, int level, EnergiesOf energies_of, Context& context)
+    : discretization_(discretization), context_(context), level_(level), dead_loads_(discretization) {
+    const Model& model = discretization.model();
+    const HierarchyLevel& mesh = discretization.mesh(level);
+    const LevelLayout& layout = discretization.layout(level);
+    const Hierarchy& hierarchy = discretization.hierarchy();
+    const int finest = discretization.finest();
+    const LevelLayout& fine_layout = discretization.layout(finest);
+    const bool proxy = level < finest && energies_of == EnergiesOf::finest;
+    const bool bending_on_level = proxy && model.hierarchy.bending_on == BendingOn::level;
+
+    if (level < finest) {
+        Prolongation prolongation(mesh.rest, mesh.faces, mesh.to_finest, hierarchy.finest().rest,
+                                  model.hierarchy.prolongation);
+        mass_ = prolongation.pull_back_values(dead_loads_.masses());
+        if (proxy)
+            carrier_ = std::make_unique<Carrier>(Carrier{std::move(prolongation), {}});
+    } else {
+        mass_ = dead_loads_.masses();
+    }
+
+    if (proxy) {
+        elasticity_ = std::make_unique<ShellEnergies>(model, hierarchy.finest().rest, fine_layout.body_faces,
+                                                      fine_layout.body_face_part,
+                                                      ShellEnergies::Parts{true, !bending_on_level, true});
+        if (bending_on_level)
+            level_bending_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
+                                                             ShellEnergies::Parts{false, true, false});
+        if (!uses_galerkin())
+            curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
+                                                         ShellEnergies::Parts{true, !bending_on_level, false});
+        else
+            for (const ElementEnergy* term : elasticity_->elastic_terms())
+                carrier_->products.emplace_back(carrier_->prolongation, term->element_count(),
+                                                [term](int e) { return term->vertices(e); });
+    } else {
+        elasticity_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
+                                                      ShellEnergies::Parts{});
+    }
+
+    std::vector<std::uint8_t> obstacle(at(model.part_count()), 0);
+    for (int part = 0; part < model.part_count(); ++part)
+        obstacle[at(part)] = model.is_obstacle(part);
+    ContactOptions options;
+    options.distance = model.contact.distance;
+    options.self = model.contact.self;
+    options.stiffness = contact_stiffness(model);
+    contact_ = std::make_unique<Contact>(CollisionMesh(mesh.rest, mesh.faces, mesh.part, obstacle), options);
+    contact_->set_times(&context.times);
+    build_system();
+
+    double elastic_scale = 0;
+    for (const Body& body : model.bodies)
+        elastic_scale = std::max(elastic_scale, body.material.youngs_modulus * body.material.thickness);
+    const double diagonal = bounding_box(mesh.rest).diagonal();
+    force_round_off_ = 1e-12 * elastic_scale * diagonal;
+}
+
+ShellProblem::~ShellProblem() = default;
+
+bool ShellProblem::uses_galerkin() const {
+    return discretization_.model().solve.curvature != Curvature::own;
+}
+
+void ShellProblem::build_system() {
+    std::vector<Edge> pairs;
+    const auto append = [&](const std::vector<Edge>& more) { pairs.insert(pairs.end(), more.begin(), more.end()); };
+    if (carrier_) {
+        for (const GalerkinProduct& product : carrier_->products)
+            append(product.pairs());
+        if (curvature_)
+            append(curvature_->pairs());
+        if (level_bending_)
+            append(level_bending_->pairs());
+    } else {
+        append(elasticity_->pairs());
+    }
+    system_ = NewtonSystem(discretization_.layout(level_).prescribed, pairs);
+}
+
+void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h) {
+    targets_ = as_vector(discretization_.script(level_, t));
+    anchor_ = anchor;
+    inverse_h_squared_ = 1 / (h * h);
+    elasticity_->set_time(t);
+    gravity_forces_ = dead_loads_.weight(t);
+    load_forces_ = dead_loads_.loads(t);
+    if (!carrier_ && level_ < discretization_.finest()) {
+        const HierarchyLevel& mesh = discretization_.mesh(level_);
+        const Prolongation prolongation(mesh.rest, mesh.faces, mesh.to_finest,
+                                        discretization_.hierarchy().finest().rest);
+        gravity_forces_ = prolongation.pull_back_lagged(gravity_forces_);
+        load_forces_ = prolongation.pull_back_lagged(load_forces_);
+    }
+    system_.reset_pattern();
+    x_memo_.resize(3, 0);
+    const VecX x = as_vector(current);
+    load_forces_ += elasticity_->open_pressure_forces(carried(x), t);
+}
+
+const Positions& ShellProblem::level_positions(const VecX& x) {
+    const auto points = as_positions(x);
+    if (x_memo_.cols() != points.cols() || x_memo_ != points) {
+        x_memo_ = points;
+        if (carrier_)
+            y_memo_ = carrier_->prolongation.apply(x_memo_);
+    }
+    return x_memo_;
+}
+
+const Positions& ShellProblem::carried(const VecX& x) {
+    level_positions(x);
+    return carrier_ ? y_memo_ : x_memo_;
+}
+
+Positions ShellProblem::pull_back(const VecX& x, const Positions& carried_gradient) {
+    if (!carrier_)
+        return carried_gradient;
+    if (discretization_.model().solve.gradient == GradientKind::lagged)
+        return carrier_->prolongation.pull_back_lagged(carried_gradient);
+    return carrier_->prolongation.pull_back(level_positions(x), carried_gradient);
+}
+
+double ShellProblem::value(const VecX& x) {
+    const EnergyBreakdown parts = energies(x);
+    const Positions& points = level_positions(x);
+    double inertia = 0;
+    for (int v = 0; v < points.cols(); ++v)
+        inertia += mass_[v] * (points.col(v) - anchor_.col(v)).squaredNorm();
+    return parts.elastic + parts.contact + parts.gravity + parts.loads + 0.5 * inverse_h_squared_ * inertia;
+}
+
+EnergyBreakdown ShellProblem::energies(const VecX& x) {
+    EnergyBreakdown parts;
+    {
+        PhaseScope scope(context_.times, Phase::elastic);
+        const Positions& y = carried(x);
+        parts.elastic = elasticity_->elastic_value(y);
+        parts.gravity = -gravity_forces_.cwiseProduct(y).sum();
+        parts.loads = elasticity_->pressure_value(y) - load_forces_.cwiseProduct(y).sum();
+        if (level_bending_)
+            parts.elastic += level_bending_->elastic_value(x_memo_);
+    }
+    if (std::isfinite(parts.elastic))
+        parts.contact = contact_->value(level_positions(x));
+    return parts;
+}
+
+void ShellProblem::gradient(const VecX& x, VecX& gradient) {
+    const Positions& points = level_positions(x);
+    Positions sum;
+    {
+        PhaseScope scope(context_.times, Phase::elastic);
+        const Positions& y = carried(x);
+        Positions on_carrier = -gravity_forces_ - load_forces_;
+        elasticity_->add_elastic_gradient(y, on_carrier);
+        elasticity_->add_pressure_gradient(y, on_carrier);
+        sum = pull_back(x, on_carrier);
+        if (level_bending_)
+            level_bending_->add_elastic_gradient(points, sum);
+        for (int v = 0; v < points.cols(); ++v)
+            sum.col(v) += inverse_h_squared_ * mass_[v] * (points.col(v) - anchor_.col(v));
+    }
+    contact_->add_gradient(points, sum);
+    gradient = as_vector(sum);
+}
+
+NodalForces ShellProblem::forces(const VecX& x) {
+    const Positions& points = level_positions(x);
+    const Positions& y = carried(x);
+    NodalForces result;
+    Positions elastic = Positions::Zero(3, y.cols());
+    elasticity_->add_elastic_gradient(y, elastic);
+    result.elastic = pull_back(x, elastic);
+    if (level_bending_)
+        level_bending_->add_elastic_gradient(points, result.elastic);
+    result.elastic *= -1;
+    Positions pressure = Positions::Zero(3, y.cols());
+    elasticity_->add_pressure_gradient(y, pressure);
+    result.loads = pull_back(x, load_forces_ - pressure);
+    result.gravity = pull_back(x, gravity_forces_);
+    result.contact = Positions::Zero(3, vertex_count());
+    contact_->add_gradient(points, result.contact);
+    result.contact *= -1;
+    return result;
+}
+
+void ShellProblem::assemble(const VecX& x, NewtonSystem& system) {
+    const Positions& points = level_positions(x);
+    system.begin(contact_->coupled_pairs(points));
+    {
+        PhaseScope scope(context_.times, Phase::elastic);
+        for (int v = 0; v < points.cols(); ++v)
+            system.add_block(v, v, inverse_h_squared_ * mass_[v] * Mat3::Identity());
+        if (!carrier_) {
+            elasticity_->add_hessian(points, system);
+        } else if (curvature_) {
+            curvature_->add_hessian(points, system);
+        } else {
+            const Positions& y = y_memo_;
+            const std::vector<Prolongation::Block> jacobian = carrier_->prolongation.jacobian(points);
+            const std::vector<const ElementEnergy*> terms = elasticity_->elastic_terms();
+            for (std::size_t k = 0; k < terms.size(); ++k)
+                carrier_->products[k].add(
+                    jacobian, [&](int e, double* hessian) { terms[k]->hessian(e, y, true, hessian); }, system);
+        }
+        if (level_bending_)
+            level_bending_->add_hessian(points, system);
+    }
+    contact_->add_hessian(points, system);
+}
+
+double ShellProblem::max_step(const VecX& x, const VecX& d) {
+    const Positions direction = as_positions(d);
+    const Positions points = level_positions(x);
+    double alpha = contact_->max_step(points, direction);
+    PhaseScope scope(context_.times, Phase::ccd);
+    alpha = std::min(alpha, largest_regular_step(discretization_.layout(level_).body_faces, points, alpha * direction) *
+                                alpha);
+    if (carrier_) {
+        const Positions& here = carried(x);
+        const Positions there = carrier_->prolongation.apply(points + alpha * direction);
+        alpha *= largest_regular_step(discretization_.layout(discretization_.finest()).body_faces, here, there - here);
+    }
+    return alpha;
+}
+
+double ShellProblem::residual(const VecX& x) {
+    const NodalForces nodal = forces(x);
+    Positions total = nodal.total();
+    const auto& prescribed = discretization_.layout(level_).prescribed;
+    for (Eigen::Index i = 0; i < total.size(); ++i)
+        if (prescribed[static_cast<std::size_t>(i)])
+            total.data()[i] = 0;
+    const double largest_total = largest_norm(total);
+    const double largest_term = std::max({largest_norm(nodal.elastic), largest_norm(nodal.contact),
+                                          largest_norm(nodal.gravity), largest_norm(nodal.loads)});
+    return largest_total <= force_round_off_ ? 0.0 : largest_total / largest_term;
+}
+
+double ShellProblem::min_gap(const VecX& x) { return contact_->min_gap(level_positions(x)); }
+
+double ShellProblem::max_stretch(const VecX& x) { return elasticity_->largest_stretch(carried(x)); }
+
+int ShellProblem::active_contacts(const VecX& x) { return contact_->active_pair_count(level_positions(x)); }
+
+} // namespace plisse

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <plisse/contact/contact.h>
+#include <plisse/model/dead_loads.h>
+#include <plisse/model/shell_energies.h>
+#include <plisse/solve/objective.h>
+#include <plisse/transfer/galerkin.h>
+
+namespace plisse {
+
+/// Which energies a level below the finest minimises.
+enum class EnergiesOf {
+    finest, ///< the proxy of PSQ equation 2: elasticity and loads on the finest mesh through P^l
+    level   ///< the level's own mesh, as `direct --level` does
+};
+
+/// Forces per vertex of the level by term (N, the negative gradients).
+struct NodalForces {
+    Positions elastic, contact, gravity, loads;
+    Positions total() const { return elastic + contact + gravity + loads; }
+};
+
+struct EnergyBreakdown {
+    double elastic = 0, contact = 0, gravity = 0, loads = 0;
+};
+
+/// F_l of PSQ equations 2 and 3 as an Objective: barrier contact and inertia on level l's mesh, elasticity and loads on
+/// the finest mesh through the direct prolongation P^l (or on level l itself), over one time step.
+class ShellProblem : public Objective {
+public:
+    /// The discretization must outlive the problem.
+    ShellProblem(const Discretization& discretization, int level, EnergiesOf energies_of, Context& context);
+    ~ShellProblem() override;
+
+    int level() const { return level_; }
+    int vertex_count() const { return static_cast<int>(mass_.size()); }
+
+    /// Starts the step to time t: inertia 1/(2 h^2) |x - anchor|_M^2, loads and scripts at t, directions of follower
+    /// pressure frozen at `current`.
+    void begin_step(const Positions& current, const Positions& anchor, double t, double h);
+
+    double value(const VecX& x) override;
+    void gradient(const VecX& x, VecX& gradient) override;
+    void assemble(const VecX& x, NewtonSystem& system) override;
+    NewtonSystem& system() override { return system_; }
+    const VecX& targets() const override { return targets_; }
+    double max_step(const VecX& x, const VecX& d) override;
+
+    /// Forces without inertia.
+    NodalForces forces(const VecX& x);
+    EnergyBreakdown energies(const VecX& x);
+    /// Largest nodal force of the total on free unknowns, over the largest nodal force of any one term; 0 where all
+    /// forces are round-off.
+    double residual(const VecX& x);
+    double min_gap(const VecX& x);
+    /// Largest principal stretch of the mesh that carries the membrane.
+    double max_stretch(const VecX& x);
+    int active_contacts(const VecX& x);
+    /// Positions of the mesh that carries the elasticity.
+    const Positions& carried(const VecX& x);
+
+private:
+    struct Carrier; ///< prolongation and Galerkin products of a proxy
+    const Positions& level_positions(const VecX& x);
+    Positions pull_back(const VecX& x, const Positions& carried_gradient);
+    bool uses_galerkin() const;
+    void build_system();
+
+    const Discretization& discretization_;
+    Context& context_;
+    int level_;
+    DeadLoads dead_loads_;
+    VecX mass_; ///< kg per level vertex
+    std::unique_ptr<Carrier> carrier_; ///< null where the level carries its own elasticity
+    std::unique_ptr<ShellEnergies> elasticity_;    ///< on the carrying mesh
+    std::unique_ptr<ShellEnergies> level_bending_; ///< when bending_on is level
+    std::unique_ptr<ShellEnergies> curvature_;     ///< the level's own Hessian, when curvature is own
+    std::unique_ptr<Contact> contact_;
+    NewtonSystem system_;
+
+    VecX targets_;
+    Positions anchor_;
+    double inverse_h_squared_ = 0;
+    Positions gravity_forces_, load_forces_; ///< N on the carrying mesh, at the step's time
+    double force_round_off_ = 0;
+
+    Positions x_memo_, y_memo_;
+};
+
+} // namespace plisse
