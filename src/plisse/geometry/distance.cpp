@@ -1,0 +1,191 @@
+#include <plisse/geometry/distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include <Eigen/Geometry>
+
+namespace plisse {
+
+namespace {
+
+/// Sines below this are noise: such edges count as parallel and such triangles as degenerate, and the nearest of their
+/// borders is as near as the inside to within round-off.
+constexpr double parallel_sine_squared = 1e-20;
+
+/// A point of one primitive against an edge of the other; `side` is the sign of the edge's primitive in the offset.
+struct Border {
+    int point, start, end;
+    double side;
+};
+
+constexpr std::array<Border, 3> triangle_borders = {{{0, 1, 2, -1}, {0, 2, 3, -1}, {0, 3, 1, -1}}};
+constexpr std::array<Border, 4> edge_borders = {{{0, 2, 3, -1}, {1, 2, 3, -1}, {2, 0, 1, 1}, {3, 0, 1, 1}}};
+
+std::uint8_t bit(int corner) {
+    return static_cast<std::uint8_t>(1 << corner);
+}
+
+/// Points relative to the first one, so that a stencil far from the origin loses no digits.
+Stencil relative(const Stencil& x) {
+    return x.colwise() - x.col(0);
+}
+
+/// Fills in what follows from weights and slides. Rounding leaves parts of y * w along the tangents that are as large
+/// as the offset itself when the primitives nearly touch, so they are taken off.
+void complete(Separation& s, const Stencil& y) {
+    s.tangents = y * s.slides;
+    s.offset = y * s.weights;
+    if (s.freedom == 1) {
+        const Vec3 tangent = s.tangents.col(0);
+        s.offset -= s.offset.dot(tangent) / tangent.squaredNorm() * tangent;
+    } else if (s.freedom == 2) {
+        const Vec3 normal = s.tangents.col(0).cross(s.tangents.col(1)).normalized();
+        s.offset = s.offset.dot(normal) * normal;
+    }
+    s.squared_distance = s.offset.squaredNorm();
+}
+
+/// Parameter in [0, 1] of the edge's closest point.
+double closest_parameter(const Vec3& p, const Vec3& start, const Vec3& end) {
+    const Vec3 edge = end - start;
+    const double along = edge.dot(p - start), length_squared = edge.squaredNorm();
+    if (!(along > 0))
+        return 0;
+    return along < length_squared ? along / length_squared : 1;
+}
+
+Separation separate_border(const Stencil& y, const Border& border, double parameter) {
+    Separation s;
+    s.weights[border.point] = -border.side;
+    s.weights[border.start] = border.side * (1 - parameter);
+    s.weights[border.end] = border.side * parameter;
+    s.corners = bit(border.point);
+    if (parameter < 1)
+        s.corners |= bit(border.start);
+    if (parameter > 0)
+        s.corners |= bit(border.end);
+    if (parameter > 0 && parameter < 1) {
+        s.freedom = 1;
+        s.slides(border.start, 0) = -border.side;
+        s.slides(border.end, 0) = border.side;
+    }
+    complete(s, y);
+    return s;
+}
+
+Separation separate_nearest_border(const Stencil& y, std::span<const Border> borders) {
+    const Border* nearest = nullptr;
+    double nearest_parameter = 0, least = std::numeric_limits<double>::infinity();
+    for (const Border& border : borders) {
+        const Vec3 p = y.col(border.point), start = y.col(border.start), end = y.col(border.end);
+        const double parameter = closest_parameter(p, start, end);
+        const double squared = (p - (1 - parameter) * start - parameter * end).squaredNorm();
+        if (!nearest || squared < least) {
+            nearest = &border;
+            nearest_parameter = parameter;
+            least = squared;
+        }
+    }
+    return separate_border(y, *nearest, nearest_parameter);
+}
+
+} // namespace
+
+Separation separate_points(const Vec3& p, const Vec3& q) {
+    Separation s;
+    s.weights << 1, -1, 0, 0;
+    s.corners = bit(0) | bit(1);
+    s.offset = p - q;
+    s.squared_distance = s.offset.squaredNorm();
+    return s;
+}
+
+Separation separate_point_edge(const Vec3& p, const Vec3& e0, const Vec3& e1) {
+    Stencil y;
+    y << Vec3::Zero(), e0 - p, e1 - p, Vec3::Zero();
+    return separate_border(y, triangle_borders[0], closest_parameter(y.col(0), y.col(1), y.col(2)));
+}
+
+Separation separate_point_triangle(const Stencil& x) {
+    const Stencil y = relative(x);
+    const Vec3 e1 = y.col(2) - y.col(1), e2 = y.col(3) - y.col(1), to_point = -y.col(1);
+    const Vec3 normal = e1.cross(e2);
+    const double area_squared = normal.squaredNorm();
+    if (area_squared > parallel_sine_squared * e1.squaredNorm() * e2.squaredNorm()) {
+        const double b1 = to_point.cross(e2).dot(normal) / area_squared;
+        const double b2 = e1.cross(to_point).dot(normal) / area_squared;
+        if (b1 > 0 && b2 > 0 && b1 + b2 < 1) {
+            Separation s;
+            s.weights << 1, -(1 - b1 - b2), -b1, -b2;
+            s.slides.col(0) << 0, 1, -1, 0;
+            s.slides.col(1) << 0, 1, 0, -1;
+            s.freedom = 2;
+            s.corners = 0b1111;
+            complete(s, y);
+            return s;
+        }
+    }
+    return separate_nearest_border(y, triangle_borders);
+}
+
+Separation separate_edges(const Stencil& x) {
+    const Stencil y = relative(x);
+    const Vec3 u = y.col(1), v = y.col(3) - y.col(2), between = -y.col(2);
+    const Vec3 normal = u.cross(v);
+    const double area_squared = normal.squaredNorm();
+    if (area_squared > parallel_sine_squared * u.squaredNorm() * v.squaredNorm()) {
+        const double a = v.cross(between).dot(normal) / area_squared;
+        const double b = u.cross(between).dot(normal) / area_squared;
+        if (a > 0 && a < 1 && b > 0 && b < 1) {
+            Separation s;
+            s.weights << 1 - a, a, -(1 - b), -b;
+            s.slides.col(0) << -1, 1, 0, 0;
+            s.slides.col(1) << 0, 0, 1, -1;
+            s.freedom = 2;
+            s.corners = 0b1111;
+            complete(s, y);
+            return s;
+        }
+    }
+    return separate_nearest_border(y, edge_borders);
+}
+
+Vec12 squared_distance_gradient(const Separation& separation) {
+    Vec12 gradient;
+    Eigen::Map<Stencil>(gradient.data()) = 2 * separation.offset * separation.weights.transpose();
+    return gradient;
+}
+
+Separation with_orthonormal_tangents(const Separation& separation) {
+    Separation s = separation;
+    for (int k = 0; k < s.freedom; ++k) {
+        if (k == 1) {
+            const double along = s.tangents.col(0).dot(s.tangents.col(1));
+            s.tangents.col(1) -= along * s.tangents.col(0);
+            s.slides.col(1) -= along * s.slides.col(0);
+        }
+        const double length = s.tangents.col(k).norm();
+        s.tangents.col(k) /= length;
+        s.slides.col(k) /= length;
+    }
+    return s;
+}
+
+Mat12 squared_distance_hessian(const Separation& separation) {
+    const Separation s = with_orthonormal_tangents(separation);
+    Mat12 hessian;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            hessian.block<3, 3>(3 * i, 3 * j) = 2 * s.weights[i] * s.weights[j] * Mat3::Identity();
+    for (int k = 0; k < s.freedom; ++k) {
+        const Stencil u = s.tangents.col(k) * s.weights.transpose() + s.offset * s.slides.col(k).transpose();
+        const Eigen::Map<const Vec12> column(u.data());
+        hessian.noalias() -= 2 * column * column.transpose();
+    }
+    return hessian;
+}
+
+} // namespace plisse
