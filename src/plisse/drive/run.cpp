@@ -1,0 +1,277 @@
+#include <plisse/drive/run.h>
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <plisse/base/error.h>
+#include <plisse/drive/level_stepper.h>
+#include <plisse/drive/refine.h>
+#include <plisse/spatial/box.h>
+#include <plisse/spatial/intersections.h>
+
+namespace plisse {
+
+namespace {
+
+using Outcome = LevelStepper::Outcome;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+bool is_direct(const Model& model) { return model.solve.method == Method::direct; }
+
+/// Meshes a run needs: `direct` on the finest needs no hierarchy.
+int levels_needed(const Model& model) {
+    return is_direct(model) && !model.solve.level ? 1 : model.hierarchy.levels;
+}
+
+/// Steps the timeline on the first level, then refines level by level to the last. `direct` has one level only.
+class Driver {
+public:
+    Driver(const Model& model, const RunOptions& options, Recorder& recorder, Context& context);
+    RunResult run();
+
+private:
+    bool simulate();
+    bool run_level(LevelStepper& stepper);
+    std::optional<Positions> refine_from(int level, const Positions& x);
+    void check_start(const Positions& x) const;
+    void finish(LevelStepper& stepper);
+    void find_lagging(LevelStepper& stepper);
+    void find_reactions(LevelStepper& stepper);
+    Checkpoint fresh_progress(int level, const Positions& x) const;
+    void fail(RunStatus status, const std::string& message);
+
+    const Model& model_;
+    Recorder& recorder_;
+    Context& context_;
+    const Checkpoint* resume_;
+    double duration_;
+    Discretization discretization_;
+    RunLog log_;
+    int first_level_, last_level_;
+    RunResult result_;
+};
+
+RunReport starting_report(const Model& model, const RunOptions& options) {
+    if (options.resume)
+        return options.resume->report;
+    RunReport report;
+    report.name = model.name;
+    report.method = is_direct(model) ? "direct" : "progressive";
+    return report;
+}
+
+Driver::Driver(const Model& model, const RunOptions& options, Recorder& recorder, Context& context)
+    : model_(model), recorder_(recorder), context_(context), resume_(options.resume),
+      duration_(options.until >= 0 ? std::min(options.until, model.solve.duration) : model.solve.duration),
+      discretization_(model, levels_needed(model), context),
+      log_(discretization_, recorder, context, starting_report(model, options)),
+      first_level_(is_direct(model) ? model.solve.level.value_or(discretization_.finest()) : 0),
+      last_level_(is_direct(model) ? first_level_ : discretization_.finest()) {
+    if (first_level_ > discretization_.finest())
+        throw InputError(model.name, fmt::format("level {} was asked for, but there are only levels 0 to {}", first_level_,
+                                                 discretization_.finest()),
+                         "a smaller level, or more hierarchy.levels");
+    if (resume_)
+        log_.restore_frame_numbers(resume_->frame_numbers);
+}
+
+void Driver::fail(RunStatus status, const std::string& message) {
+    RunReport& report = log_.report();
+    if (report.status == RunStatus::running)
+        report.status = status;
+    if (!message.empty())
+        report.message += (report.message.empty() ? "" : "; ") + message;
+}
+
+void Driver::check_start(const Positions& x) const {
+    const std::vector<int>& part = discretization_.layout(first_level_).face_part;
+    const auto both_obstacles = [&](int a, int b) {
+        return model_.is_obstacle(part[at(a)]) && model_.is_obstacle(part[at(b)]);
+    };
+    const auto& faces = discretization_.mesh(first_level_).faces;
+    const auto pairs = intersecting_pairs(x, faces, both_obstacles);
+    if (pairs.empty())
+        return;
+    const Vec3 place = x.col(faces[at(pairs.front()[0])][0]);
+    throw InputError(model_.name,
+                     fmt::format("{} pairs of faces intersect at the start, the first near ({:.6g}, {:.6g}, {:.6g})",
+                                 pairs.size(), place.x(), place.y(), place.z()),
+                     "surfaces that do not touch");
+}
+
+Checkpoint Driver::fresh_progress(int level, const Positions& x) const {
+    Checkpoint progress;
+    progress.level = level;
+    progress.t = duration_;
+    progress.positions = x;
+    progress.settle_time_step = model_.solve.time_step;
+    progress.settle_tolerance = model_.solve.tolerance;
+    return progress;
+}
+
+/// Timeline (first level only), then equilibrium. False when the run cannot or shall not go on.
+bool Driver::run_level(LevelStepper& stepper) {
+    const int level = stepper.progress().level;
+    Checkpoint& progress = stepper.progress();
+    if (level == first_level_ && progress.settle_step == 0) {
+        const Outcome outcome = stepper.run_timeline(duration_);
+        if (outcome == Outcome::cancelled)
+            return false;
+        if (outcome != Outcome::done && level == last_level_)
+            fail(RunStatus::not_converged, outcome == Outcome::stalled ? "a step of the timeline stalled"
+                                                                       : "a step of the timeline was cut short");
+    }
+    const Outcome outcome = model_.solve.settle      ? stepper.settle(duration_)
+                            : level == first_level_ ? Outcome::done
+                                                    : stepper.step_once(duration_);
+    if (outcome == Outcome::cancelled)
+        return false;
+    if (outcome != Outcome::done && (model_.solve.settle || level == last_level_))
+        fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium", level));
+    stepper.measure();
+    log_.frame(level, duration_, level == last_level_ ? "final" : "settle", stepper.positions());
+    progress.settled = true;
+    progress.positions = stepper.positions();
+    log_.checkpoint(progress);
+    return true;
+}
+
+std::optional<Positions> Driver::refine_from(int level, const Positions& x) {
+    RefineResult refined = refine(discretization_, level, x, duration_, context_);
+    if (refined.cancelled)
+        return std::nullopt;
+    log_.report().refinements.push_back(refined.report);
+    if (!refined.complete) {
+        fail(RunStatus::not_converged, refined.message);
+        return std::nullopt;
+    }
+    return refined.positions;
+}
+
+/// True when the last level was reached and stepped.
+bool Driver::simulate() {
+    Checkpoint progress;
+    if (resume_) {
+        progress = *resume_;
+    } else {
+        progress = fresh_progress(first_level_, discretization_.start(first_level_));
+        progress.t = 0;
+        check_start(progress.positions);
+    }
+    for (int level = progress.level;; ++level) {
+        const EnergiesOf energies = is_direct(model_) ? EnergiesOf::level : EnergiesOf::finest;
+        LevelStepper stepper(discretization_, level, energies, level == last_level_, log_);
+        stepper.set_positions(progress.positions);
+        stepper.progress() = progress;
+        result_.level = level;
+        const bool goes_on = progress.settled || run_level(stepper);
+        result_.positions = stepper.positions();
+        if (!goes_on)
+            return false;
+        if (level == last_level_) {
+            finish(stepper);
+            return true;
+        }
+        const std::optional<Positions> refined = refine_from(level, stepper.positions());
+        if (!refined)
+            return false;
+        log_.frame(level + 1, duration_, "refine", *refined);
+        progress = fresh_progress(level + 1, *refined);
+        result_.level = level + 1;
+        result_.positions = *refined;
+        log_.checkpoint(progress);
+    }
+}
+
+void Driver::finish(LevelStepper& stepper) {
+    stepper.measure();
+    find_lagging(stepper);
+    find_reactions(stepper);
+    if (!log_.report().lagging.empty())
+        fail(RunStatus::not_converged, "a script could not be followed");
+    if (log_.report().intersecting_pairs > 0)
+        fail(RunStatus::failed, "intersecting faces were found");
+    fail(RunStatus::converged, "");
+}
+
+void Driver::find_lagging(LevelStepper& stepper) {
+    const int level = result_.level;
+    const HierarchyLevel& mesh = discretization_.mesh(level);
+    const Positions script = discretization_.script(level, duration_);
+    const double allowed = 1e-4 * bounding_box(mesh.rest).diagonal();
+    std::vector<Lag> lags(model_.handles.size() + model_.obstacles.size());
+    for (int v = 0; v < script.cols(); ++v) {
+        Vec3 away = stepper.positions().col(v) - script.col(v);
+        for (int axis = 0; axis < 3; ++axis)
+            if (!discretization_.layout(level).prescribed[at(3 * v + axis)])
+                away[axis] = 0;
+        if (away.norm() <= allowed)
+            continue;
+        const auto count = [&](std::size_t script_number) {
+            ++lags[script_number].vertices;
+            lags[script_number].distance = std::max(lags[script_number].distance, away.norm());
+        };
+        for (int h : discretization_.handles_of(level, v))
+            count(at(h));
+        const int part = mesh.part[at(v)];
+        if (model_.is_obstacle(part))
+            count(model_.handles.size() + at(part) - model_.bodies.size());
+    }
+    for (std::size_t s = 0; s < lags.size(); ++s) {
+        lags[s].name = s < model_.handles.size() ? model_.handles[s].name
+                                                 : model_.obstacles[s - model_.handles.size()].name;
+        if (lags[s].vertices > 0)
+            log_.report().lagging.push_back(lags[s]);
+    }
+}
+
+/// What holds each handle and obstacle in place: the gradient of the energy on its vertices.
+void Driver::find_reactions(LevelStepper& stepper) {
+    const int level = result_.level;
+    const Positions x = stepper.positions();
+    const Positions holding = -stepper.problem().forces(stepper.unknowns()).total();
+    std::vector<Reaction> reactions;
+    for (const Handle& handle : model_.handles)
+        reactions.push_back({handle.name});
+    for (const Obstacle& obstacle : model_.obstacles)
+        reactions.push_back({obstacle.name});
+    const auto add = [&](std::size_t number, const Vec3& point, const Vec3& force) {
+        reactions[number].force += force;
+        reactions[number].torque += point.cross(force);
+    };
+    for (int v = 0; v < x.cols(); ++v) {
+        for (int h : discretization_.handles_of(level, v)) {
+            Vec3 force = holding.col(v);
+            for (int axis = 0; axis < 3; ++axis)
+                if (!model_.handles[at(h)].axes[at(axis)])
+                    force[axis] = 0;
+            add(at(h), x.col(v), force);
+        }
+        const int part = discretization_.mesh(level).part[at(v)];
+        if (model_.is_obstacle(part))
+            add(model_.handles.size() + at(part) - model_.bodies.size(), x.col(v), holding.col(v));
+    }
+    log_.report().reactions = std::move(reactions);
+}
+
+RunResult Driver::run() {
+    recorder_.on_hierarchy(discretization_.hierarchy());
+    log_.report().status = RunStatus::running;
+    log_.publish();
+    if (!simulate() && log_.report().status == RunStatus::running)
+        fail(RunStatus::interrupted, "interrupted");
+    log_.publish();
+    result_.report = log_.report();
+    return result_;
+}
+
+} // namespace
+
+RunResult run(const Model& model, const RunOptions& options, Recorder& recorder, Context& context) {
+    return Driver(model, options, recorder, context).run();
+}
+
+} // namespace plisse
