@@ -7,9 +7,11 @@ namespace plisse {
 
 ThreadLimit::ThreadLimit(int threads)
     : threads_(threads > 0 ? threads : tbb::info::default_concurrency()),
-      control_(new tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                       static_cast<std::size_t>(threads_))) {}
+      control_(
+          new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_))) {}
 
-ThreadLimit::~ThreadLimit() { delete static_cast<tbb::global_control*>(control_); }
+ThreadLimit::~ThreadLimit() {
+    delete static_cast<tbb::global_control*>(control_);
+}
 
 } // namespace plisse

@@ -39,7 +39,9 @@ void parallel_for(int count, int grain, const Body& body) {
 }
 
 /// Number of fixed-size chunks a deterministic reduction over `count` items uses; independent of the thread count.
-inline int chunk_count(int count, int chunk_size) { return (count + chunk_size - 1) / chunk_size; }
+inline int chunk_count(int count, int chunk_size) {
+    return (count + chunk_size - 1) / chunk_size;
+}
 
 /// Runs body(chunk, begin, end) over fixed chunks of [0, count).
 template <typename Body>

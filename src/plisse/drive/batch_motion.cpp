@@ -13,7 +13,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// Two primitives of which at least one moves; the vertices are sorted within each primitive.
 struct MovingPair {
@@ -215,9 +217,8 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
     const std::vector<Cluster> clusters = cluster_records(pairs, movers);
 
     std::vector<int> stopped(clusters.size());
-    parallel_for(static_cast<int>(clusters.size()), 1, [&](int c) {
-        stopped[at(c)] = advance(mesh, clusters[at(c)], batch, options.reference_gap);
-    });
+    parallel_for(static_cast<int>(clusters.size()), 1,
+                 [&](int c) { stopped[at(c)] = advance(mesh, clusters[at(c)], batch, options.reference_gap); });
 
     BatchMotionResult result;
     result.min_gap = std::numeric_limits<double>::infinity();

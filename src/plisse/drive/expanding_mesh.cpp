@@ -6,7 +6,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 int id_count(const Hierarchy& hierarchy) {
     return static_cast<int>(hierarchy.finest().rest.cols()) + static_cast<int>(hierarchy.collapses.size());
@@ -63,10 +65,9 @@ void ExpandingMesh::set_targets(int from, const Positions& x, double t) {
         const Collapse& collapse = discretization_.hierarchy().collapses[at(c)];
         const Vec3 edge = collapse.rest_j - collapse.rest_i;
         const double length_squared = edge.squaredNorm();
-        const double share =
-            length_squared > 0
-                ? std::clamp(edge.dot(collapse.rest_k - collapse.rest_i) / length_squared, 0.0, 1.0)
-                : 0.5;
+        const double share = length_squared > 0
+                                 ? std::clamp(edge.dot(collapse.rest_k - collapse.rest_i) / length_squared, 0.0, 1.0)
+                                 : 0.5;
         targets_.col(collapse.k) = (1 - share) * targets_.col(collapse.i) + share * targets_.col(collapse.j);
         rest_.col(collapse.i) = collapse.rest_i;
         rest_.col(collapse.j) = collapse.rest_j;

@@ -19,7 +19,9 @@ public:
     const Discretization& discretization() const { return discretization_; }
     const DynamicFaces& faces() const { return faces_; }
     const Positions& rest() const { return rest_; }
-    const Positions& targets() const { return targets_; } ///< where each vertex of the next level (and of between) should go
+    const Positions& targets() const {
+        return targets_;
+    } ///< where each vertex of the next level (and of between) should go
     Vec3 position(int id) const { return positions_.col(id); }
     const Positions& positions() const { return positions_; }
     void set_position(int id, const Vec3& p) { positions_.col(id) = p; }

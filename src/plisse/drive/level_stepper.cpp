@@ -27,7 +27,9 @@ LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     return LevelStepper::Outcome::cancelled;
 }
 
-int timeline_steps(double duration, double h) { return static_cast<int>(std::ceil(duration / h - 1e-9)); }
+int timeline_steps(double duration, double h) {
+    return static_cast<int>(std::ceil(duration / h - 1e-9));
+}
 
 } // namespace
 

@@ -12,7 +12,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// The faces in reach of a patch in numbers of their own.
 struct LocalMesh {
@@ -70,8 +72,7 @@ class PatchProblem : public Objective {
 public:
     PatchProblem(const LocalMesh& local, const Material& material, double distance)
         : membrane_(local.rest, local.elastic_faces, materials(local, material)),
-          assembly_(membrane_, static_cast<int>(local.ids.size())), targets_(as_vector(local.x)),
-          anchor_(targets_) {
+          assembly_(membrane_, static_cast<int>(local.ids.size())), targets_(as_vector(local.x)), anchor_(targets_) {
         ContactOptions options;
         options.distance = distance;
         options.stiffness = material.youngs_modulus;

@@ -12,9 +12,9 @@ namespace plisse {
 /// One saved state.
 struct Frame {
     int level = 0;
-    int number = 0; ///< of this level, from 0
-    double t = 0;   ///< s
-    std::string phase; ///< preview | settle | refine | final
+    int number = 0;                       ///< of this level, from 0
+    double t = 0;                         ///< s
+    std::string phase;                    ///< preview | settle | refine | final
     const Positions* positions = nullptr; ///< of the level's vertices
 };
 
@@ -76,14 +76,14 @@ struct RunReport {
 /// Everything needed to go on with a run after the last completed step. A refinement counts as one step.
 struct Checkpoint {
     int level = 0;
-    int step = 0;        ///< steps of the timeline done
-    int settle_step = 0; ///< settling steps done on this level
-    double settle_time_step = 0; ///< s, of the next settling step
-    double settle_tolerance = 0; ///< m/s, of the next settling step
-    bool settled = false;        ///< this level is done
-    double t = 0;        ///< s
-    Positions positions; ///< of the level's vertices, exact
-    Positions velocity;  ///< m/s, of the same vertices, when dynamics is on; else empty
+    int step = 0;                   ///< steps of the timeline done
+    int settle_step = 0;            ///< settling steps done on this level
+    double settle_time_step = 0;    ///< s, of the next settling step
+    double settle_tolerance = 0;    ///< m/s, of the next settling step
+    bool settled = false;           ///< this level is done
+    double t = 0;                   ///< s
+    Positions positions;            ///< of the level's vertices, exact
+    Positions velocity;             ///< m/s, of the same vertices, when dynamics is on; else empty
     std::vector<int> frame_numbers; ///< next frame number per level
     RunReport report;
 };

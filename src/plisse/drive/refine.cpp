@@ -14,7 +14,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// One batch of independent expansions on an expanding mesh.
 class BatchExpansion {

@@ -17,9 +17,13 @@ namespace {
 
 using Outcome = LevelStepper::Outcome;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
-bool is_direct(const Model& model) { return model.solve.method == Method::direct; }
+bool is_direct(const Model& model) {
+    return model.solve.method == Method::direct;
+}
 
 /// Meshes a run needs: `direct` on the finest needs no hierarchy.
 int levels_needed(const Model& model) {
@@ -71,8 +75,9 @@ Driver::Driver(const Model& model, const RunOptions& options, Recorder& recorder
       first_level_(is_direct(model) ? model.solve.level.value_or(discretization_.finest()) : 0),
       last_level_(is_direct(model) ? first_level_ : discretization_.finest()) {
     if (first_level_ > discretization_.finest())
-        throw InputError(model.name, fmt::format("level {} was asked for, but there are only levels 0 to {}", first_level_,
-                                                 discretization_.finest()),
+        throw InputError(model.name,
+                         fmt::format("level {} was asked for, but there are only levels 0 to {}", first_level_,
+                                     discretization_.finest()),
                          "a smaller level, or more hierarchy.levels");
     if (resume_)
         log_.restore_frame_numbers(resume_->frame_numbers);
@@ -124,7 +129,7 @@ bool Driver::run_level(LevelStepper& stepper) {
             fail(RunStatus::not_converged, outcome == Outcome::stalled ? "a step of the timeline stalled"
                                                                        : "a step of the timeline was cut short");
     }
-    const Outcome outcome = model_.solve.settle      ? stepper.settle(duration_)
+    const Outcome outcome = model_.solve.settle     ? stepper.settle(duration_)
                             : level == first_level_ ? Outcome::done
                                                     : stepper.step_once(duration_);
     if (outcome == Outcome::cancelled)
@@ -221,8 +226,8 @@ void Driver::find_lagging(LevelStepper& stepper) {
             count(model_.handles.size() + at(part) - model_.bodies.size());
     }
     for (std::size_t s = 0; s < lags.size(); ++s) {
-        lags[s].name = s < model_.handles.size() ? model_.handles[s].name
-                                                 : model_.obstacles[s - model_.handles.size()].name;
+        lags[s].name =
+            s < model_.handles.size() ? model_.handles[s].name : model_.obstacles[s - model_.handles.size()].name;
         if (lags[s].vertices > 0)
             log_.report().lagging.push_back(lags[s]);
     }

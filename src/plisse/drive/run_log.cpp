@@ -8,8 +8,8 @@ namespace plisse {
 
 RunLog::RunLog(const Discretization& discretization, Recorder& recorder, Context& context, RunReport report)
     : discretization_(discretization), recorder_(recorder), context_(context), report_(std::move(report)),
-      frame_numbers_(static_cast<std::size_t>(discretization.finest()) + 1, 0),
-      earlier_seconds_(report_.wall_seconds) {}
+      frame_numbers_(static_cast<std::size_t>(discretization.finest()) + 1, 0), earlier_seconds_(report_.wall_seconds) {
+}
 
 LevelReport& RunLog::level_report(int level) {
     auto& levels = report_.levels;

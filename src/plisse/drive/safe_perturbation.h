@@ -12,8 +12,8 @@ enum class Rung { toward_target, sampled, relaxed, failed };
 double safe_radius(const ExpandingMesh& mesh, const Collapse& collapse);
 
 /// Finds places for i and j within `radius` of where k was such that no face around them meets another one, by exact
-/// predicates: toward their targets, else along stratified directions seeded by `seed` (PSQ section 4.4.1, algorithm 5).
-/// The record has been split. Touches positions of i and j only, so the records of a batch may be done in parallel.
+/// predicates: toward their targets, else along stratified directions seeded by `seed` (PSQ section 4.4.1, algorithm
+/// 5). The record has been split. Touches positions of i and j only, so the records of a batch may be done in parallel.
 Rung perturb(ExpandingMesh& mesh, const Collapse& collapse, double radius, std::uint64_t seed);
 
 /// Whether the faces around i and j meet any face that shares a vertex with them elsewhere than there.

@@ -135,14 +135,13 @@ bool SparseCholesky::factorize(const NewtonSystem& system, double shift) {
     State& s = *state_;
     if (system.row_count() == 0)
         return true;
+    s.matrix.x = const_cast<double*>(system.values().data()); // CHOLMOD reads it only
     if (s.pattern_version != system.pattern_version()) {
         s.analyze(system);
         s.pattern_version = system.pattern_version();
     }
-    s.matrix.x = const_cast<double*>(system.values().data());
     double beta[2] = {shift, 0};
-    if (!cholmod_factorize_p(&s.matrix, beta, nullptr, 0, s.factor, &s.common) &&
-        s.common.status != CHOLMOD_NOT_POSDEF)
+    if (!cholmod_factorize_p(&s.matrix, beta, nullptr, 0, s.factor, &s.common) && s.common.status != CHOLMOD_NOT_POSDEF)
         throw std::runtime_error("CHOLMOD could not factorise the matrix (out of memory?)");
     return s.common.status == CHOLMOD_OK;
 }
@@ -167,7 +166,11 @@ VecX SparseCholesky::solve(const VecX& right_hand_side) {
     return Eigen::Map<const VecX>(static_cast<const double*>(s.solution->x), right_hand_side.size());
 }
 
-int SparseCholesky::ordering_count() const { return state_->ordering_count; }
-double SparseCholesky::factor_nonzeros() const { return state_->common.lnz; }
+int SparseCholesky::ordering_count() const {
+    return state_->ordering_count;
+}
+double SparseCholesky::factor_nonzeros() const {
+    return state_->common.lnz;
+}
 
 } // namespace plisse

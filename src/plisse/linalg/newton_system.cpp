@@ -12,7 +12,9 @@ std::uint64_t block_key(int row, int column) {
     return (static_cast<std::uint64_t>(column) << 32) | static_cast<std::uint32_t>(row);
 }
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 } // namespace
 

@@ -49,9 +49,9 @@ public:
     /// H u over all unknowns, 3 per vertex.
     const VecX& coupling() const { return coupling_; }
 
-    /// Lower triangle in compressed columns of blocks: rows of column c are block_rows[column_starts[c] ...), ascending,
-    /// the diagonal first. The value of scalar (3r+a, 3c+b) of the k-th block of column c with m blocks lies at
-    /// values[9 * column_starts[c] + b * 3m + 3k + a]: that is the order of a scalar compressed-column matrix.
+    /// Lower triangle in compressed columns of blocks: rows of column c are block_rows[column_starts[c] ...),
+    /// ascending, the diagonal first. The value of scalar (3r+a, 3c+b) of the k-th block of column c with m blocks lies
+    /// at values[9 * column_starts[c] + b * 3m + 3k + a]: that is the order of a scalar compressed-column matrix.
     const std::vector<int>& column_starts() const { return column_starts_; }
     const std::vector<int>& block_rows() const { return block_rows_; }
     const std::vector<double>& values() const { return values_; }

@@ -15,7 +15,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// Positions at rest with every obstacle where its script has it at t = 0.
 Positions posed_rest(const Model& model) {
@@ -61,9 +63,10 @@ Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::
     DecimationSummary summary;
     Hierarchy hierarchy = decimate({rest, model.mesh.faces, part, labels, frozen}, options, &context, &summary);
     if (summary.ran_dry)
-        context.on_message(fmt::format("the coarsest level has {} vertices, not the {} asked for: no further edge can be "
-                                       "collapsed without harm to the shape",
-                                       summary.reached_vertices.front(), summary.wanted_vertices.front()));
+        context.on_message(
+            fmt::format("the coarsest level has {} vertices, not the {} asked for: no further edge can be "
+                        "collapsed without harm to the shape",
+                        summary.reached_vertices.front(), summary.wanted_vertices.front()));
     return hierarchy;
 }
 
@@ -98,8 +101,8 @@ void Discretization::lay_out(int level) {
     const HierarchyLevel& fine = hierarchy_.finest();
     for (int v = 0; v < fine.rest.cols(); ++v)
         if (fine.label[at(v)] >= 0)
-            finest_at.try_emplace({fine.part[at(v)], fine.label[at(v)], fine.rest(0, v), fine.rest(1, v), fine.rest(2, v)},
-                                  v);
+            finest_at.try_emplace(
+                {fine.part[at(v)], fine.label[at(v)], fine.rest(0, v), fine.rest(1, v), fine.rest(2, v)}, v);
     layout.source.assign(vertices, -1);
     layout.prescribed.assign(3 * vertices, 0);
     for (std::size_t v = 0; v < vertices; ++v) {
@@ -109,8 +112,8 @@ void Discretization::lay_out(int level) {
         if (mesh_of_level.label[v] < 0)
             continue;
         const auto& p = mesh_of_level.rest;
-        layout.source[v] = finest_at.at(
-            {mesh_of_level.part[v], mesh_of_level.label[v], p(0, column), p(1, column), p(2, column)});
+        layout.source[v] =
+            finest_at.at({mesh_of_level.part[v], mesh_of_level.label[v], p(0, column), p(1, column), p(2, column)});
         for (int h : handles_of(level, column))
             for (std::size_t axis = 0; axis < 3; ++axis)
                 layout.prescribed[3 * v + axis] |= model_.handles[at(h)].axes[axis];
@@ -144,8 +147,7 @@ Positions Discretization::script(int level, double t) const {
 
 Positions Discretization::start(int level) const {
     const Range bodies{0, model_.bodies.empty() ? 0 : model_.bodies.back().vertices.end};
-    const bool starts_at_rest =
-        model_.start.leftCols(bodies.end) == model_.mesh.positions.leftCols(bodies.end);
+    const bool starts_at_rest = model_.start.leftCols(bodies.end) == model_.mesh.positions.leftCols(bodies.end);
     if (starts_at_rest)
         return mesh(level).rest;
     if (level == finest()) {
@@ -187,8 +189,8 @@ Positions Discretization::restricted_start(int level) const {
         cholesky.factorize(system, 1e-9);
     for (int round = 0; round < 8; ++round) {
         const Positions residual = target - prolongation.apply(x);
-        const VecX step = system.scatter(
-            cholesky.solve(system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
+        const VecX step =
+            system.scatter(cholesky.solve(system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
         x += as_positions(step);
     }
     const auto skip = [&](int a, int b) {

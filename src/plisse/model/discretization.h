@@ -11,10 +11,10 @@ namespace plisse {
 
 /// What a run needs to know of one level beside its mesh.
 struct LevelLayout {
-    std::vector<int> face_part;           ///< per face: body, or obstacle after the bodies
-    std::vector<Face> body_faces;         ///< the faces of bodies, with level vertices
-    std::vector<int> body_face_part;      ///< per body face
-    std::vector<int> source;              ///< per vertex: the finest vertex it coincides with at rest, when pinned; else -1
+    std::vector<int> face_part;      ///< per face: body, or obstacle after the bodies
+    std::vector<Face> body_faces;    ///< the faces of bodies, with level vertices
+    std::vector<int> body_face_part; ///< per body face
+    std::vector<int> source;         ///< per vertex: the finest vertex it coincides with at rest, when pinned; else -1
     std::vector<std::uint8_t> prescribed; ///< per unknown (3 per vertex)
 };
 
@@ -34,7 +34,8 @@ public:
     Positions script(int level, double t) const;
 
     /// Positions to start from on a level: bodies as the model starts, obstacles where their script has them at t = 0.
-    /// Throws InputError when a start shape that differs from rest cannot be carried to the level without intersections.
+    /// Throws InputError when a start shape that differs from rest cannot be carried to the level without
+    /// intersections.
     Positions start(int level) const;
 
     /// A body's handles on a vertex of a level, as indices into model().handles.

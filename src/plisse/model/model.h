@@ -13,11 +13,11 @@ namespace plisse {
 
 /// An isotropic shell material.
 struct Material {
-    double density = 472.6;        ///< kg/m^3 of solid, > 0
-    double youngs_modulus = 8e5;   ///< Pa, > 0
-    double poisson_ratio = 0.243;  ///< in (-1, 0.5)
-    double thickness = 3e-4;       ///< m, > 0
-    double bending_scale = 1;      ///< c of DESIGN.md section 4, >= 0
+    double density = 472.6;       ///< kg/m^3 of solid, > 0
+    double youngs_modulus = 8e5;  ///< Pa, > 0
+    double poisson_ratio = 0.243; ///< in (-1, 0.5)
+    double thickness = 3e-4;      ///< m, > 0
+    double bending_scale = 1;     ///< c of DESIGN.md section 4, >= 0
 };
 
 /// Half-open range of vertices or faces of the model's mesh.
@@ -46,7 +46,7 @@ struct Obstacle {
 struct Handle {
     std::string name;
     int body = 0;
-    std::vector<int> vertices;            ///< of the model's mesh, ascending
+    std::vector<int> vertices; ///< of the model's mesh, ascending
     std::array<bool, 3> axes{true, true, true};
     MotionTrack motion;
 };
@@ -65,7 +65,6 @@ struct ContactSettings {
     bool self = true;
 };
 
-
 enum class BendingOn { finest, level };
 enum class Curvature { automatic, own, galerkin };
 enum class GradientKind { exact, lagged };
@@ -80,13 +79,14 @@ struct HierarchySettings {
 
 struct SolveSettings {
     Method method = Method::progressive;
-    std::optional<int> level;  ///< `direct` on this level's own mesh; the finest when empty
-    double time_step = 0.1;    ///< s, > 0
-    double duration = 0;       ///< s, >= 0
+    std::optional<int> level; ///< `direct` on this level's own mesh; the finest when empty
+    double time_step = 0.1;   ///< s, > 0
+    double duration = 0;      ///< s, >= 0
     bool settle = true;
     int max_settle_steps = 200;
-    double tolerance = 1e-3;   ///< m/s
-    /// Newton iterations after which a step is cut short. Empty: 20 on preview levels, 1000 on the finest and in direct.
+    double tolerance = 1e-3; ///< m/s
+    /// Newton iterations after which a step is cut short. Empty: 20 on preview levels, 1000 on the finest and in
+    /// direct.
     std::optional<int> max_iterations_per_step;
     double frame_interval = 0.1; ///< s of the timeline, > 0
     Curvature curvature = Curvature::automatic;

@@ -8,7 +8,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 std::unique_ptr<MembraneEnergy> make_membrane(const Model& model, const Positions& rest, const std::vector<Face>& faces,
                                               const std::vector<int>& face_body) {
@@ -31,9 +33,9 @@ std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& re
     for (const auto& sides : hinges.faces) {
         const Body& body = model.bodies[at(face_body[at(sides[0])])];
         const Material& material = body.material;
-        materials.scaled_rigidity.push_back(
-            material.bending_scale *
-            bending_rigidity(material.youngs_modulus, material.poisson_ratio, material.thickness));
+        materials.scaled_rigidity.push_back(material.bending_scale * bending_rigidity(material.youngs_modulus,
+                                                                                      material.poisson_ratio,
+                                                                                      material.thickness));
         materials.flat.push_back(body.flat_rest_angles);
     }
     return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials);
@@ -126,7 +128,9 @@ Positions ShellEnergies::open_pressure_forces(const Positions& y, double t) cons
     return forces;
 }
 
-double ShellEnergies::largest_stretch(const Positions& y) const { return membrane_ ? membrane_->largest_stretch(y) : 1; }
+double ShellEnergies::largest_stretch(const Positions& y) const {
+    return membrane_ ? membrane_->largest_stretch(y) : 1;
+}
 
 std::vector<const ElementEnergy*> ShellEnergies::elastic_terms() const {
     std::vector<const ElementEnergy*> terms;

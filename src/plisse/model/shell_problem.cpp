@@ -12,7 +12,9 @@ namespace plisse {
 
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 constexpr int chunk_size = 512;
 
@@ -294,10 +296,16 @@ double ShellProblem::residual(const VecX& x) {
     return largest_total <= force_round_off_ ? 0.0 : largest_total / largest_term;
 }
 
-double ShellProblem::min_gap(const VecX& x) { return contact_->min_gap(level_positions(x)); }
+double ShellProblem::min_gap(const VecX& x) {
+    return contact_->min_gap(level_positions(x));
+}
 
-double ShellProblem::max_stretch(const VecX& x) { return elasticity_->largest_stretch(carried(x)); }
+double ShellProblem::max_stretch(const VecX& x) {
+    return elasticity_->largest_stretch(carried(x));
+}
 
-int ShellProblem::active_contacts(const VecX& x) { return contact_->active_pair_count(level_positions(x)); }
+int ShellProblem::active_contacts(const VecX& x) {
+    return contact_->active_pair_count(level_positions(x));
+}
 
 } // namespace plisse

@@ -73,8 +73,8 @@ private:
     Context& context_;
     int level_;
     DeadLoads dead_loads_;
-    VecX mass_; ///< kg per level vertex
-    std::unique_ptr<Carrier> carrier_; ///< null where the level carries its own elasticity
+    VecX mass_;                                    ///< kg per level vertex
+    std::unique_ptr<Carrier> carrier_;             ///< null where the level carries its own elasticity
     std::unique_ptr<ShellEnergies> elasticity_;    ///< on the carrying mesh
     std::unique_ptr<ShellEnergies> level_bending_; ///< when bending_on is level
     std::unique_ptr<ShellEnergies> curvature_;     ///< the level's own Hessian, when curvature is own

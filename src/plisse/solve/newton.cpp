@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -19,60 +18,165 @@ struct Direction {
     int worst_vertex = -1;
 };
 
-VecX step_to_targets(const Objective& objective, const NewtonSystem& system, const VecX& x, double tolerance) {
-    VecX u = VecX::Zero(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i)
-        if (system.prescribed()[static_cast<std::size_t>(i)])
-            u[i] = objective.targets()[i] - x[i];
-    if (u.lpNorm<Eigen::Infinity>() <= tolerance)
-        u.setZero();
-    return u;
-}
-
-/// Factorises, shifting the diagonal where round-off has made H indefinite.
-void factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
-    double largest = 0;
-    for (double value : system.values())
-        largest = std::max(largest, std::abs(value));
-    double shift = 0;
-    while (!cholesky.factorize(system, shift))
-        shift = std::max(1e-12 * largest, 10 * shift);
-}
-
-Direction newton_direction(Objective& objective, SparseCholesky& cholesky, const VecX& x, const VecX& gradient,
-                           const VecX& u, Context& context) {
-    NewtonSystem& system = objective.system();
-    system.set_prescribed_step(u);
-    objective.assemble(x, system);
-    PhaseScope scope(context.times, Phase::linear_solve);
-    factorize_shifted(cholesky, system);
-    const VecX rhs = system.gather(-gradient - system.coupling());
-    const VecX solution = cholesky.solve(rhs);
-    Direction direction;
-    const VecX free_step = system.scatter(solution);
-    direction.d = free_step + u;
-    direction.slope = gradient.dot(direction.d);
-    // d.Hd = f.Hf + 2 f.Hu + u.Hu, and H f = rhs on the free rows.
-    direction.curvature =
-        rhs.dot(solution) + 2 * free_step.dot(system.coupling()) + u.dot(system.coupling());
-    direction.norm = largest_nodal_norm(direction.d, &direction.worst_vertex);
-    return direction;
-}
-
-/// The exact penalty of prescribed unknowns on their way: weight * share, where share is 1 at the start of the solve and
-/// shrinks by (1 - alpha) with each step.
+/// The exact penalty of prescribed unknowns on their way: weight * share, where share is 1 at the start of the solve
+/// and shrinks by (1 - alpha) with each step.
 struct Penalty {
-    double share = 0;
+    double share = 1;
     double weight = 0;
 
     double value() const { return weight * share; }
     /// Makes the quadratic model of the merit decrease along the whole step.
     void raise_for(const Direction& direction) {
-        if (share <= 0)
-            return;
-        const double needed = direction.slope + std::max(direction.curvature, 0.0);
-        weight = std::max(weight, 2 * needed / share);
+        if (share > 0)
+            weight = std::max(weight, 2 * (direction.slope + std::max(direction.curvature, 0.0)) / share);
     }
+};
+
+/// Factorises, shifting the diagonal where round-off has made H indefinite.
+void factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
+    double shift = 0;
+    while (!cholesky.factorize(system, shift)) {
+        double largest = 0;
+        for (double value : system.values())
+            largest = std::max(largest, std::abs(value));
+        shift = std::max(1e-12 * largest, 10 * shift);
+    }
+}
+
+/// One minimisation: the state that its iterations share.
+class Newton {
+public:
+    Newton(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options, Context& context)
+        : objective_(objective), cholesky_(cholesky), x_(x), options_(options), context_(context) {}
+
+    NewtonSummary run(const std::function<void(const NewtonIteration&)>& observe) {
+        value_ = evaluate(x_);
+        for (;;) {
+            if (context_.cancelled())
+                return ended(NewtonEnd::cancelled, "cancelled");
+            const VecX u = step_to_targets();
+            const Direction direction = newton_direction(u);
+            if (finished(direction))
+                return summary_;
+            penalty_.raise_for(direction);
+            const double alpha = line_search(direction);
+            short_steps_ = alpha < options_.short_step ? short_steps_ + 1 : 0;
+            if (alpha == 0)
+                return ended(NewtonEnd::stalled, fmt::format("no decrease along a step of {:.3g} m at vertex {}",
+                                                             direction.norm, direction.worst_vertex));
+            accept(u, alpha);
+            if (observe)
+                observe({summary_.iterations, value_, direction.norm, alpha, summary_.remaining});
+            if (short_steps_ >= options_.max_short_steps)
+                return ended(NewtonEnd::stalled, fmt::format("steps of {:.3g} m at vertex {} are cut again and again",
+                                                             direction.norm, direction.worst_vertex));
+        }
+    }
+
+private:
+    double evaluate(const VecX& x) {
+        ++summary_.evaluations;
+        return objective_.value(x);
+    }
+
+    NewtonSummary ended(NewtonEnd end, const std::string& message) {
+        summary_.end = end;
+        summary_.message = message;
+        return summary_;
+    }
+
+    VecX step_to_targets() {
+        const auto& prescribed = objective_.system().prescribed();
+        VecX u = VecX::Zero(x_.size());
+        for (Eigen::Index i = 0; i < x_.size(); ++i)
+            if (prescribed[static_cast<std::size_t>(i)])
+                u[i] = objective_.targets()[i] - x_[i];
+        if (u.lpNorm<Eigen::Infinity>() <= options_.target_tolerance)
+            u.setZero();
+        summary_.remaining = largest_nodal_norm(u);
+        if (summary_.remaining == 0)
+            penalty_.share = 0;
+        return u;
+    }
+
+    Direction newton_direction(const VecX& u) {
+        objective_.gradient(x_, gradient_);
+        NewtonSystem& system = objective_.system();
+        system.set_prescribed_step(u);
+        objective_.assemble(x_, system);
+        PhaseScope scope(context_.times, Phase::linear_solve);
+        factorize_shifted(cholesky_, system);
+        const VecX rhs = system.gather(-gradient_ - system.coupling());
+        const VecX solution = cholesky_.solve(rhs);
+        Direction direction;
+        const VecX free_step = system.scatter(solution);
+        direction.d = free_step + u;
+        direction.slope = gradient_.dot(direction.d);
+        // d.Hd = f.Hf + 2 f.Hu + u.Hu, and H f = rhs on the free rows.
+        direction.curvature = rhs.dot(solution) + 2 * free_step.dot(system.coupling()) + u.dot(system.coupling());
+        direction.norm = largest_nodal_norm(direction.d, &direction.worst_vertex);
+        summary_.step_norm = direction.norm;
+        summary_.worst_vertex = direction.worst_vertex;
+        return direction;
+    }
+
+    /// Converged, at the cap, or lost.
+    bool finished(const Direction& direction) {
+        if (!std::isfinite(direction.norm)) {
+            ended(NewtonEnd::stalled, fmt::format("the step is not finite at vertex {}", direction.worst_vertex));
+            return true;
+        }
+        if (summary_.remaining == 0 && direction.norm <= options_.tolerance) {
+            ended(NewtonEnd::converged, "converged");
+            return true;
+        }
+        if (summary_.iterations < options_.max_iterations)
+            return false;
+        ended(NewtonEnd::iteration_cap,
+              fmt::format("cut short after {} iterations with a step of {:.3g} m at vertex {}", summary_.iterations,
+                          direction.norm, direction.worst_vertex));
+        return true;
+    }
+
+    /// The step length that was accepted, with trial_ and trial_value_ at its end; 0 when none was.
+    double line_search(const Direction& direction) {
+        PhaseScope scope(context_.times, Phase::line_search);
+        const double merit = value_ + penalty_.value();
+        const double merit_slope = direction.slope - penalty_.value();
+        const double noise = 1e-14 * std::max(std::abs(value_), std::abs(merit));
+        double alpha = objective_.max_step(x_, direction.d);
+        for (int halving = 0; halving <= options_.max_halvings && alpha > 0; ++halving, alpha *= 0.5) {
+            trial_ = x_ + alpha * direction.d;
+            trial_value_ = evaluate(trial_);
+            const double trial_merit = trial_value_ + penalty_.value() * (1 - alpha);
+            if (trial_merit <= merit + options_.sufficient_decrease * alpha * merit_slope + noise)
+                return alpha;
+        }
+        return 0;
+    }
+
+    void accept(const VecX& u, double alpha) {
+        std::swap(x_, trial_);
+        value_ = trial_value_;
+        if (alpha == 1 && summary_.remaining > 0) { // land exactly, free of the rounding of x + u
+            x_ = (u.array() != 0).select(objective_.targets(), x_);
+            value_ = evaluate(x_);
+        }
+        penalty_.share *= 1 - alpha;
+        ++summary_.iterations;
+        objective_.on_accepted(x_);
+    }
+
+    Objective& objective_;
+    SparseCholesky& cholesky_;
+    VecX& x_;
+    const NewtonOptions& options_;
+    Context& context_;
+    NewtonSummary summary_;
+    Penalty penalty_;
+    VecX gradient_, trial_;
+    double value_ = 0, trial_value_ = 0;
+    int short_steps_ = 0;
 };
 
 } // namespace
@@ -95,86 +199,7 @@ double largest_nodal_norm(const VecX& vector, int* where) {
 
 NewtonSummary minimize(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options,
                        Context& context, const std::function<void(const NewtonIteration&)>& observe) {
-    NewtonSummary summary;
-    VecX gradient(x.size());
-    double value = objective.value(x);
-    ++summary.evaluations;
-    Penalty penalty;
-    penalty.share = 1;
-    int short_steps = 0;
-    for (;;) {
-        if (context.cancelled()) {
-            summary.end = NewtonEnd::cancelled;
-            summary.message = "cancelled";
-            return summary;
-        }
-        const VecX u = step_to_targets(objective, objective.system(), x, options.target_tolerance);
-        summary.remaining = largest_nodal_norm(u);
-        if (summary.remaining == 0)
-            penalty.share = 0;
-        objective.gradient(x, gradient);
-        const Direction direction = newton_direction(objective, cholesky, x, gradient, u, context);
-        summary.step_norm = direction.norm;
-        summary.worst_vertex = direction.worst_vertex;
-        if (!std::isfinite(direction.norm)) {
-            summary.end = NewtonEnd::stalled;
-            summary.message = fmt::format("the Newton direction is not finite at vertex {}", direction.worst_vertex);
-            return summary;
-        }
-        if (summary.remaining == 0 && direction.norm <= options.tolerance) {
-            summary.end = NewtonEnd::converged;
-            summary.message = "converged";
-            return summary;
-        }
-        if (summary.iterations >= options.max_iterations) {
-            summary.end = NewtonEnd::iteration_cap;
-            summary.message =
-                fmt::format("cut short after {} iterations with a step of {:.3g} m at vertex {}", summary.iterations,
-                            direction.norm, direction.worst_vertex);
-            return summary;
-        }
-        penalty.raise_for(direction);
-
-        double alpha = objective.max_step(x, direction.d);
-        const double merit = value + penalty.value();
-        const double merit_slope = direction.slope - penalty.value();
-        const double noise = 1e-14 * std::max({std::abs(value), std::abs(merit), 1e-300});
-        VecX trial;
-        double trial_value = std::numeric_limits<double>::infinity();
-        bool accepted = false;
-        {
-            PhaseScope scope(context.times, Phase::line_search);
-            for (int halving = 0; halving <= options.max_halvings && alpha > 0; ++halving, alpha *= 0.5) {
-                trial = x + alpha * direction.d;
-                trial_value = objective.value(trial);
-                ++summary.evaluations;
-                const double trial_merit = trial_value + penalty.value() * (1 - alpha);
-                if (trial_merit <= merit + options.sufficient_decrease * alpha * merit_slope + noise) {
-                    accepted = true;
-                    break;
-                }
-            }
-        }
-        short_steps = alpha < options.short_step ? short_steps + 1 : 0;
-        if (!accepted || short_steps >= options.max_short_steps) {
-            summary.end = NewtonEnd::stalled;
-            summary.message = fmt::format("stalled: {} with a step of {:.3g} m at vertex {}",
-                                          accepted ? "steps are cut again and again" : "no decrease along the direction",
-                                          direction.norm, direction.worst_vertex);
-            return summary;
-        }
-        x = trial;
-        if (alpha == 1) // land exactly, free of the rounding of x + u
-            for (Eigen::Index i = 0; i < x.size(); ++i)
-                if (u[i] != 0)
-                    x[i] = objective.targets()[i];
-        value = alpha == 1 && summary.remaining > 0 ? objective.value(x) : trial_value;
-        penalty.share *= 1 - alpha;
-        ++summary.iterations;
-        objective.on_accepted(x);
-        if (observe)
-            observe({summary.iterations, value, direction.norm, alpha, summary.remaining});
-    }
+    return Newton(objective, cholesky, x, options, context).run(observe);
 }
 
 } // namespace plisse

@@ -10,12 +10,12 @@
 namespace plisse {
 
 struct NewtonOptions {
-    double tolerance = 1e-4;      ///< converged when the largest nodal step |d_i| is at most this, m
-    double target_tolerance = 1e-12; ///< prescribed unknowns count as arrived within this, m
-    int max_iterations = 1000;    ///< >= 1
+    double tolerance = 1e-4;           ///< converged when the largest nodal step |d_i| is at most this, m
+    double target_tolerance = 1e-12;   ///< prescribed unknowns count as arrived within this, m
+    int max_iterations = 1000;         ///< >= 1
     double sufficient_decrease = 1e-4; ///< Armijo constant, in (0, 0.5)
-    int max_halvings = 40;        ///< of one line search
-    int max_short_steps = 30;     ///< stalled after this many steps in a row shorter than short_step
+    int max_halvings = 40;             ///< of one line search
+    int max_short_steps = 30;          ///< stalled after this many steps in a row shorter than short_step
     double short_step = 1e-5;
 };
 
@@ -36,11 +36,11 @@ struct NewtonIteration {
 
 struct NewtonSummary {
     NewtonEnd end = NewtonEnd::converged;
-    std::string message;  ///< why it ended, in words
-    int iterations = 0;   ///< steps taken
-    int evaluations = 0;  ///< of the value
-    double step_norm = 0; ///< of the last direction, m
-    double remaining = 0; ///< largest distance of a prescribed vertex to its target, m
+    std::string message;   ///< why it ended, in words
+    int iterations = 0;    ///< steps taken
+    int evaluations = 0;   ///< of the value
+    double step_norm = 0;  ///< of the last direction, m
+    double remaining = 0;  ///< largest distance of a prescribed vertex to its target, m
     int worst_vertex = -1; ///< where the last direction is largest
 };
 

@@ -10,8 +10,9 @@
 
 namespace plisse {
 
-/// J^T H J for a fine Hessian H that is a sum over elements of at most four vertices, J being a prolongation's Jacobian;
-/// neither matrix is ever formed. Elements that reach the same coarse vertices are summed before they are scattered.
+/// J^T H J for a fine Hessian H that is a sum over elements of at most four vertices, J being a prolongation's
+/// Jacobian; neither matrix is ever formed. Elements that reach the same coarse vertices are summed before they are
+/// scattered.
 class GalerkinProduct {
 public:
     using VerticesOf = std::function<std::span<const int>(int element)>;
@@ -24,8 +25,7 @@ public:
     std::vector<Edge> pairs() const;
 
     /// Adds the product to the system. jacobian: Prolongation::jacobian at the current positions.
-    void add(const std::vector<Prolongation::Block>& jacobian, const HessianOf& hessian_of,
-             NewtonSystem& system) const;
+    void add(const std::vector<Prolongation::Block>& jacobian, const HessianOf& hessian_of, NewtonSystem& system) const;
 
 private:
     static constexpr int most_fine = 4;

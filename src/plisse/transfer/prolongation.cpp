@@ -13,7 +13,9 @@ namespace {
 
 constexpr int grain = 256;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// Groups items by key in [0, groups): items of group g are items[starts[g] .. starts[g + 1]), ascending.
 template <typename Key>
@@ -59,9 +61,11 @@ Prolongation::Prolongation(const Positions& coarse_rest, std::vector<Face> coars
             rest_edges(coarse_rest.col(face[1]) - origin, coarse_rest.col(face[2]) - origin).inverse());
     }
     const int faces = static_cast<int>(coarse_faces_.size());
-    group_by(fine_count(), faces, [&](int i) { return anchors_[at(i)].face; }, fine_of_face_, fine_of_face_starts_);
-    group_by(3 * faces, coarse_count_, [&](int c) { return coarse_faces_[at(c / 3)][at(c % 3)]; }, corners_of_vertex_,
-             corner_starts_);
+    group_by(
+        fine_count(), faces, [&](int i) { return anchors_[at(i)].face; }, fine_of_face_, fine_of_face_starts_);
+    group_by(
+        3 * faces, coarse_count_, [&](int c) { return coarse_faces_[at(c / 3)][at(c % 3)]; }, corners_of_vertex_,
+        corner_starts_);
     if (kind == ProlongationOperator::intrinsic)
         return;
     const std::vector<PolarFrame> rest_frames = frames(coarse_rest);
@@ -131,9 +135,9 @@ std::vector<Prolongation::Block> Prolongation::jacobian(const Positions& coarse)
             const Vec2& g = gradients[at(k)];
             const Vec3 q = g.x() * frame.rotation.col(1) - g.y() * frame.rotation.col(0);
             const Vec3 tilt = frame.rotation * (frame.stretch_inverse * g);
-            blocks[at(i)].middleCols<3>(3 * k) = anchor.weights[k] * Mat3::Identity() + turned * q.transpose() +
-                                                 (g.dot(inverse_t) * frame.normal - gamma * tilt) *
-                                                     frame.normal.transpose();
+            blocks[at(i)].middleCols<3>(3 * k) =
+                anchor.weights[k] * Mat3::Identity() + turned * q.transpose() +
+                (g.dot(inverse_t) * frame.normal - gamma * tilt) * frame.normal.transpose();
         }
     });
     return blocks;

@@ -59,8 +59,8 @@ private:
     std::vector<Anchor> anchors_;
     Positions offsets_;
     Positions fine_rest_;
-    std::vector<int> fine_of_face_, fine_of_face_starts_;     ///< fine vertices anchored in each coarse face
-    std::vector<int> corners_of_vertex_, corner_starts_; ///< (3 face + corner) around each coarse vertex
+    std::vector<int> fine_of_face_, fine_of_face_starts_; ///< fine vertices anchored in each coarse face
+    std::vector<int> corners_of_vertex_, corner_starts_;  ///< (3 face + corner) around each coarse vertex
 };
 
 } // namespace plisse

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <plisse/solve/newton.h>
+
+using namespace plisse;
+
+namespace {
+
+/// Springs of rest length 1 along a chain of points in the plane z = 0, with a wall that x may not pass.
+class SpringChain : public Objective {
+public:
+    explicit SpringChain(int count, double wall = std::numeric_limits<double>::infinity())
+        : n_(count), wall_(wall), targets_(VecX::Zero(3 * count)) {
+        std::vector<std::uint8_t> prescribed(static_cast<std::size_t>(3 * n_), 0);
+        std::fill_n(prescribed.begin(), 3, std::uint8_t{1});
+        std::fill_n(prescribed.end() - 3, 3, std::uint8_t{1});
+        std::vector<Edge> pairs;
+        for (int v = 0; v + 1 < n_; ++v)
+            pairs.push_back({v, v + 1});
+        system_ = NewtonSystem(prescribed, pairs);
+        targets_[3 * (n_ - 1)] = n_ - 1;
+    }
+    VecX rest() const {
+        VecX x = VecX::Zero(3 * n_);
+        for (int v = 0; v < n_; ++v)
+            x[3 * v] = v;
+        return x;
+    }
+    void set_target(const Vec3& end) { targets_.tail<3>() = end; }
+
+    double value(const VecX& x) override {
+        double sum = 0;
+        for (int v = 0; v + 1 < n_; ++v) {
+            const double length = (x.segment<3>(3 * v + 3) - x.segment<3>(3 * v)).norm();
+            sum += 0.5 * (length - 1) * (length - 1);
+        }
+        return sum;
+    }
+    void gradient(const VecX& x, VecX& gradient) override {
+        gradient.setZero(x.size());
+        for (int v = 0; v + 1 < n_; ++v) {
+            const Vec3 edge = x.segment<3>(3 * v + 3) - x.segment<3>(3 * v);
+            const Vec3 pull = (1 - 1 / edge.norm()) * edge;
+            gradient.segment<3>(3 * v) -= pull;
+            gradient.segment<3>(3 * v + 3) += pull;
+        }
+    }
+    void assemble(const VecX& x, NewtonSystem& system) override {
+        system.begin({});
+        for (int v = 0; v + 1 < n_; ++v) {
+            const Vec3 edge = x.segment<3>(3 * v + 3) - x.segment<3>(3 * v);
+            const Vec3 n = edge.normalized();
+            const Mat3 k =
+                n * n.transpose() + std::max(0.0, 1 - 1 / edge.norm()) * (Mat3::Identity() - n * n.transpose());
+            const std::array<int, 2> ends = {v, v + 1};
+            Eigen::Matrix<double, 6, 6> element;
+            element << k, -k, -k, k;
+            element += 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
+            system.add(ends, element);
+        }
+    }
+    NewtonSystem& system() override { return system_; }
+    const VecX& targets() const override { return targets_; }
+    double max_step(const VecX& x, const VecX& d) override {
+        double alpha = 1;
+        for (int v = 0; v < n_; ++v)
+            if (x[3 * v] + d[3 * v] > wall_)
+                alpha = std::min(alpha, 0.9 * (wall_ - x[3 * v]) / d[3 * v]);
+        return alpha;
+    }
+    void on_accepted(const VecX& x) override {
+        for (int v = 0; v < n_; ++v)
+            EXPECT_LE(x[3 * v], wall_);
+    }
+
+private:
+    int n_;
+    double wall_;
+    VecX targets_;
+    NewtonSystem system_;
+};
+
+TEST(Newton, FollowsAPrescribedEndAndSharesTheStretch) {
+    SpringChain chain(6);
+    chain.set_target(Vec3(7.5, 0, 0));
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
+    EXPECT_EQ(summary.remaining, 0);
+    for (int v = 0; v < 6; ++v)
+        EXPECT_NEAR(x[3 * v], 1.5 * v, 1e-4);
+}
+
+TEST(Newton, TakesNoStepAtRest) {
+    SpringChain chain(4);
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    EXPECT_EQ(summary.end, NewtonEnd::converged);
+    EXPECT_EQ(summary.iterations, 0);
+    EXPECT_EQ(x, chain.rest());
+}
+
+TEST(Newton, SaysThatItStallsWhereTheScriptIsBlocked) {
+    SpringChain chain(4, 3.5);
+    chain.set_target(Vec3(5, 0, 0));
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    EXPECT_EQ(summary.end, NewtonEnd::stalled);
+    EXPECT_GT(summary.remaining, 1.4);
+    EXPECT_LE(x[9], 3.5);
+    EXPECT_FALSE(summary.message.empty());
+}
+
+TEST(Newton, NeverCallsACapConverged) {
+    SpringChain chain(6);
+    chain.set_target(Vec3(3, 4, 0));
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    NewtonOptions options;
+    options.max_iterations = 1;
+    EXPECT_EQ(minimize(chain, cholesky, x, options, context).end, NewtonEnd::iteration_cap);
+}
+
+TEST(Newton, EndsWhenCancelled) {
+    SpringChain chain(6);
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    context.cancel();
+    EXPECT_EQ(minimize(chain, cholesky, x, {}, context).end, NewtonEnd::cancelled);
+}
+
+} // namespace
