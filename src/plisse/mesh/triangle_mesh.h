@@ -10,10 +10,12 @@ namespace plisse {
 /// Values a mesh file carries beside positions: kept so that they reach the output again.
 struct MeshAttribute {
     enum class Domain { vertex, face, corner };
+    enum class Number { real, int32, uint8 };
     std::string name; ///< as in the file ("uv" for texture coordinates)
     Domain domain = Domain::vertex;
-    int width = 1;              ///< numbers per element
-    std::vector<double> values; ///< width numbers per element; corners are ordered by face, then corner
+    int width = 1;                ///< numbers per element
+    std::vector<double> values;   ///< width numbers per element; corners are ordered by face, then corner
+    Number number = Number::real; ///< how files store the values
 };
 
 /// A triangle mesh as index arrays. Vertices that no face uses keep their numbers and take no part.

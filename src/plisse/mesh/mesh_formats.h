@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <plisse/mesh/read_mesh.h>
+
+namespace plisse {
+
+/// Readers of one format each: `bytes` is the whole file, `file` its name for messages. They refuse what is malformed;
+/// read_mesh refuses what is empty.
+MeshFile read_obj(std::string_view bytes, const std::string& file);
+MeshFile read_off(std::string_view bytes, const std::string& file);
+MeshFile read_ply(std::string_view bytes, const std::string& file);
+MeshFile read_stl(std::string_view bytes, const std::string& file);
+
+/// Points as the columns of a matrix.
+Positions to_positions(const std::vector<Vec3>& points);
+
+/// "1 vertex", "7 vertices": a count with its noun.
+std::string vertex_total(std::size_t count);
+
+} // namespace plisse
