@@ -51,8 +51,18 @@ std::optional<TriangleMesh> rest_of(const SavedRun& run, const SavedFrame& frame
     return rest;
 }
 
-std::string describe(const SavedFrame& frame, const TriangleMesh& mesh) {
-    return fmt::format("{} vertices, {}, t = {:.4g} s", mesh.vertex_count(), frame.phase, frame.t);
+/// Vertices of bodies, without those of obstacles.
+int count_body_vertices(const Subject& subject) {
+    std::vector<bool> of_body(static_cast<std::size_t>(subject.positions.cols()), false);
+    for (std::size_t f = 0; f < subject.faces.size(); ++f)
+        for (int v : subject.faces[f])
+            if (!subject.is_obstacle(f))
+                of_body[static_cast<std::size_t>(v)] = true;
+    return static_cast<int>(std::count(of_body.begin(), of_body.end(), true));
+}
+
+std::string describe(const SavedFrame& frame, const Subject& subject) {
+    return fmt::format("{} vertices, {}, t = {:.4g} s", count_body_vertices(subject), frame.phase, frame.t);
 }
 
 struct SheetEntry {
@@ -143,7 +153,7 @@ Image draw_sheet(const SavedRun& run, Coloring coloring, DrawOptions options) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
         options.scalars = portraits[i].scalars ? &*portraits[i].scalars : nullptr;
         panels.push_back({draw(portraits[i].subject(), options), entries[i].title,
-                          describe(entries[i].frame, portraits[i].surface.mesh)});
+                          describe(entries[i].frame, portraits[i].subject())});
     }
     return contact_sheet(panels, run.name);
 }
