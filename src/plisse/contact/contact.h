@@ -8,11 +8,16 @@
 
 namespace plisse {
 
+/// Which positive semi-definite matrix stands for a pair's Hessian: the nearest one, or the rank-one Gauss-Newton part
+/// across the closest points only, cheaper.
+enum class HessianKind { projected, gauss_newton };
+
 struct ContactOptions {
-    double distance = 1e-3;  ///< m, > 0: surfaces nearer than this repel
-    double stiffness = 1e6;  ///< Pa, > 0: scale of the barrier's pressure, from the bodies' bulk modulus
-    bool self = true;        ///< whether a body meets itself (different bodies always meet)
-    double ccd_ratio = 0.1;  ///< in (0, 1): share of its distance a pair keeps in one step at least
+    double distance = 1e-3; ///< m, > 0: surfaces nearer than this repel
+    double stiffness = 1e6; ///< Pa, > 0: scale of the barrier's pressure, from the bodies' bulk modulus
+    bool self = true;       ///< whether a body meets itself (different bodies always meet)
+    double ccd_ratio = 0.1; ///< in (0, 1): share of its distance a pair keeps in one step at least
+    HessianKind hessian = HessianKind::projected;
 };
 
 /// Barrier contact of one collision mesh (C-IPC, Li et al. 2021): energy, derivatives, and the largest step that keeps
@@ -35,8 +40,9 @@ public:
     /// Adds the Hessian at x, projected to positive semi-definite pair by pair.
     void add_hessian(const Positions& x, NewtonSystem& system);
 
-    /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least
-    /// options.ccd_ratio of its distance at x, at every moment of the motion. Never an overestimate.
+    /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least the lesser
+    /// of options.ccd_ratio of its distance at x and options.distance, at every moment of the motion. Never an
+    /// overestimate.
     double max_step(const Positions& x, const Positions& d);
 
     /// Smallest distance, m, over pairs that are not neighbours on the mesh and not near at rest, looked for within

@@ -1,0 +1,98 @@
+#include <plisse/contact/active_set.h>
+
+#include <cmath>
+#include <limits>
+
+#include <plisse/geometry/mollifier.h>
+
+namespace plisse {
+
+namespace {
+
+constexpr int chunk_size = 512;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Two parallel sheets of like triangles meet in about A / min(area) point-triangle pairs, from both sides, and 2.2 A /
+/// min(area) crossing edges per area A; with these shares the pressure between them is that of one barrier per area.
+constexpr double point_triangle_share = 0.5, edge_edge_share = 0.25;
+
+/// Distance below which a pair begins to repel. A pair that touches at rest has no silent rest to protect.
+double activation_distance(double contact_distance, double rest_distance) {
+    return rest_distance > 0 ? std::min(contact_distance, 0.5 * rest_distance) : contact_distance;
+}
+
+} // namespace
+
+ActiveSet::ActiveSet(const CollisionMesh& mesh, const ContactOptions& options) : mesh_(mesh), options_(options) {
+    edge_length_squared_.reserve(mesh.edges.size());
+    for (const Edge& edge : mesh.edges)
+        edge_length_squared_.push_back((mesh.rest.col(edge[1]) - mesh.rest.col(edge[0])).squaredNorm());
+}
+
+void ActiveSet::find(const Candidates& candidates, const Positions& x) {
+    const int first_count = candidates.size(StencilKind::point_triangle);
+    const int second_count = candidates.size(StencilKind::edge_edge);
+    const int first_chunks = chunk_count(first_count, chunk_size);
+    const int chunks = first_chunks + chunk_count(second_count, chunk_size);
+    chunks_.resize(std::max(chunks_.size(), static_cast<std::size_t>(chunks)));
+    parallel_for(chunks, 1, [&](int c) {
+        const bool first = c < first_chunks;
+        const int begin = (first ? c : c - first_chunks) * chunk_size;
+        const int end = std::min(begin + chunk_size, first ? first_count : second_count);
+        find_chunk(candidates, first ? StencilKind::point_triangle : StencilKind::edge_edge, begin, end, x,
+                   chunks_[static_cast<std::size_t>(c)]);
+    });
+    pairs_.clear();
+    energy_ = 0;
+    double least_gap_squared = infinity;
+    for (int c = 0; c < chunks; ++c) {
+        const Chunk& chunk = chunks_[static_cast<std::size_t>(c)];
+        pairs_.insert(pairs_.end(), chunk.pairs.begin(), chunk.pairs.end());
+        energy_ += chunk.energy;
+        least_gap_squared = std::min(least_gap_squared, chunk.least_gap_squared);
+    }
+    least_gap_ = std::sqrt(least_gap_squared);
+}
+
+void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
+                           Chunk& chunk) const {
+    chunk.pairs.clear();
+    chunk.energy = 0;
+    chunk.least_gap_squared = infinity;
+    for (int i = begin; i < end; ++i) {
+        const double rest_distance = candidates.rest_distance(kind, i);
+        const double activation = activation_distance(options_.distance, rest_distance);
+        const bool counts_as_gap = rest_distance >= options_.distance;
+        const double range = counts_as_gap ? options_.distance : activation;
+        const auto vertices = candidates.vertices(kind, i);
+        const Stencil stencil = gather(x, vertices);
+        if (squared_box_distance(kind, stencil) >= range * range)
+            continue;
+        const Separation separation = separate(kind, stencil);
+        if (counts_as_gap && separation.squared_distance < range * range)
+            chunk.least_gap_squared = std::min(chunk.least_gap_squared, separation.squared_distance);
+        if (separation.squared_distance >= activation * activation)
+            continue;
+        const PairParameters pair = parameters(kind, candidates.primitives(kind, i), activation);
+        chunk.energy += pair_energy(pair, separation, stencil);
+        chunk.pairs.push_back({vertices, pair, separation});
+    }
+}
+
+PairParameters ActiveSet::parameters(StencilKind kind, const std::array<int, 2>& primitives, double activation) const {
+    const auto first = static_cast<std::size_t>(primitives[0]), second = static_cast<std::size_t>(primitives[1]);
+    PairParameters pair;
+    pair.activation_squared = activation * activation;
+    double area = 0;
+    if (kind == StencilKind::point_triangle) {
+        area = point_triangle_share * std::min(mesh_.vertex_area[first], mesh_.face_area[second]);
+    } else {
+        area = edge_edge_share * std::min(mesh_.edge_area[first], mesh_.edge_area[second]);
+        pair.mollifier_threshold =
+            mollifier_threshold_factor * edge_length_squared_[first] * edge_length_squared_[second];
+    }
+    pair.scale = area * options_.stiffness * activation;
+    return pair;
+}
+
+} // namespace plisse

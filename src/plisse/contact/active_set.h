@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include <plisse/contact/candidates.h>
+#include <plisse/contact/contact.h>
+#include <plisse/contact/pair_energy.h>
+
+namespace plisse {
+
+/// A pair of primitives nearer than its activation distance.
+struct ActivePair {
+    std::array<int, 4> vertices;
+    PairParameters parameters;
+    Separation separation;
+};
+
+/// The pairs that repel at one set of positions, with their energy.
+class ActiveSet {
+public:
+    /// mesh must outlive the object.
+    ActiveSet(const CollisionMesh& mesh, const ContactOptions& options);
+
+    /// Candidates must contain x.
+    void find(const Candidates& candidates, const Positions& x);
+
+    const std::vector<ActivePair>& pairs() const { return pairs_; }
+    double energy() const { return energy_; }       ///< J
+    double least_gap() const { return least_gap_; } ///< m; as Contact::min_gap
+
+private:
+    struct Chunk {
+        std::vector<ActivePair> pairs;
+        double energy = 0, least_gap_squared = 0;
+    };
+
+    void find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
+                    Chunk& chunk) const;
+    PairParameters parameters(StencilKind kind, const std::array<int, 2>& primitives, double activation) const;
+
+    const CollisionMesh& mesh_;
+    ContactOptions options_;
+    std::vector<double> edge_length_squared_; ///< at rest
+    std::vector<Chunk> chunks_;
+    std::vector<ActivePair> pairs_;
+    double energy_ = 0, least_gap_ = 0;
+};
+
+} // namespace plisse

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cmath>
+
+namespace plisse {
+
+/// The barrier b(X) = -(X - 1)^2 ln X of a squared distance X relative to the activation distance's square, 0 from X =
+/// 1 on (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives.
+struct Barrier {
+    double value = 0, first = 0, second = 0;
+};
+
+inline Barrier barrier(double x) {
+    if (!(x < 1))
+        return {};
+    const double log = std::log(x), below = x - 1, ratio = below / x;
+    return {-below * below * log, -2 * below * log - below * ratio, -2 * log - 4 * ratio + ratio * ratio};
+}
+
+} // namespace plisse

@@ -1,0 +1,207 @@
+#include <plisse/contact/contact.h>
+
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include <plisse/contact/active_set.h>
+#include <plisse/contact/candidates.h>
+#include <plisse/contact/pair_energy.h>
+
+namespace plisse {
+
+namespace {
+
+/// Lowers `least` to `value`. The least of all values does not depend on the order of the calls.
+void lower(std::atomic<double>& least, double value) {
+    double seen = least.load(std::memory_order_relaxed);
+    while (value < seen && !least.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+    }
+}
+
+/// A lower bound on the squared distance of the boxes that two primitives sweep between two stencils.
+double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stencil& to) {
+    const Stencil low = from.cwiseMin(to), high = from.cwiseMax(to);
+    const int first = kind == StencilKind::point_triangle ? 1 : 2;
+    const Vec3 first_low = low.leftCols(first).rowwise().minCoeff();
+    const Vec3 first_high = high.leftCols(first).rowwise().maxCoeff();
+    const Vec3 second_low = low.rightCols(4 - first).rowwise().minCoeff();
+    const Vec3 second_high = high.rightCols(4 - first).rowwise().maxCoeff();
+    return (first_low - second_high).cwiseMax(second_low - first_high).cwiseMax(0.0).squaredNorm();
+}
+
+bool same(const Positions& a, const Positions& b) {
+    return a.cols() == b.cols() && a == b;
+}
+
+} // namespace
+
+struct Contact::State {
+    State(CollisionMesh collision_mesh, const ContactOptions& contact_options)
+        : mesh(std::move(collision_mesh)), options(contact_options), candidates(mesh, options.distance, options.self),
+          active(mesh, options) {}
+
+    /// Brings the active set to x.
+    void evaluate(const Positions& x);
+    /// Largest t in [0, length] up to which all candidates of one kind stay far enough apart on the way from
+    /// sweep_start along d, whose boxes reach to sweep_end.
+    double safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const;
+    double safe_length_of(StencilKind kind, const std::array<int, 4>& vertices, const Positions& x, const Positions& d,
+                          double length) const;
+
+    CollisionMesh mesh;
+    ContactOptions options;
+    Candidates candidates;
+    ActiveSet active;
+    Positions active_at{3, 0}; ///< where the active set was found
+    Positions sweep_start, sweep_end;
+    std::vector<Vec12> gradients;
+    std::vector<Mat12> hessians;
+    std::vector<Edge> coupled_pairs;
+    PhaseTimes own_times; ///< takes the times nobody asked for
+    PhaseTimes* times = &own_times;
+};
+
+void Contact::State::evaluate(const Positions& x) {
+    assert(x.cols() == mesh.rest.cols());
+    if (same(x, active_at))
+        return;
+    if (!candidates.contain(x)) {
+        const PhaseScope scope(*times, Phase::broad_phase);
+        candidates.find_around(x);
+    }
+    active.find(candidates, x);
+    active_at = x;
+}
+
+double Contact::State::safe_length_of(StencilKind kind, const std::array<int, 4>& vertices, const Positions& x,
+                                      const Positions& d, double length) const {
+    const Stencil start = gather(sweep_start, vertices);
+    const double sweep_squared = squared_sweep_distance(kind, start, gather(sweep_end, vertices));
+    if (sweep_squared >= options.distance * options.distance)
+        return length;
+    const Stencil at_x = gather(x, vertices);
+    // Any two corners bound the distance at x from above.
+    if (sweep_squared >= options.ccd_ratio * options.ccd_ratio * (at_x.col(0) - at_x.col(3)).squaredNorm())
+        return length;
+    const double kept =
+        std::min(options.ccd_ratio * std::sqrt(separate(kind, at_x).squared_distance), options.distance);
+    return safe_step(kind, start, gather(d, vertices), kept, length);
+}
+
+double Contact::State::safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const {
+    std::atomic<double> least{length};
+    parallel_for(candidates.size(kind), 256, [&](int i) {
+        const double end = least.load(std::memory_order_relaxed);
+        lower(least, safe_length_of(kind, candidates.vertices(kind, i), x, d, end));
+    });
+    return least.load();
+}
+
+Contact::Contact(CollisionMesh mesh, const ContactOptions& options)
+    : state_(std::make_unique<State>(std::move(mesh), options)) {
+    assert(options.distance > 0 && options.stiffness > 0 && options.ccd_ratio > 0 && options.ccd_ratio < 1);
+}
+
+Contact::~Contact() = default;
+
+const CollisionMesh& Contact::mesh() const {
+    return state_->mesh;
+}
+const ContactOptions& Contact::options() const {
+    return state_->options;
+}
+void Contact::set_times(PhaseTimes* times) {
+    state_->times = times;
+}
+
+double Contact::value(const Positions& x) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    return state_->active.energy();
+}
+
+void Contact::add_gradient(const Positions& x, Positions& gradient) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    const auto& pairs = state_->active.pairs();
+    auto& gradients = state_->gradients;
+    gradients.resize(pairs.size());
+    parallel_for(static_cast<int>(pairs.size()), 128, [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        gradients[p] = pair_gradient(pairs[p].parameters, pairs[p].separation, gather(x, pairs[p].vertices));
+    });
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        for (int i = 0; i < 4; ++i)
+            gradient.col(pairs[p].vertices[static_cast<std::size_t>(i)]) += gradients[p].segment<3>(3 * i);
+}
+
+const std::vector<Edge>& Contact::coupled_pairs(const Positions& x) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    auto& coupled = state_->coupled_pairs;
+    coupled.clear();
+    for (const ActivePair& pair : state_->active.pairs())
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = i + 1; j < 4; ++j)
+                coupled.push_back(
+                    {std::min(pair.vertices[i], pair.vertices[j]), std::max(pair.vertices[i], pair.vertices[j])});
+    std::sort(coupled.begin(), coupled.end());
+    coupled.erase(std::unique(coupled.begin(), coupled.end()), coupled.end());
+    return coupled;
+}
+
+void Contact::add_hessian(const Positions& x, NewtonSystem& system) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    const auto& pairs = state_->active.pairs();
+    auto& hessians = state_->hessians;
+    hessians.resize(pairs.size());
+    const auto hessian_of =
+        state_->options.hessian == HessianKind::projected ? pair_projected_hessian : pair_gauss_newton_hessian;
+    parallel_for(static_cast<int>(pairs.size()), 64, [&](int i) {
+        const auto p = static_cast<std::size_t>(i);
+        hessians[p] = hessian_of(pairs[p].parameters, pairs[p].separation, gather(x, pairs[p].vertices));
+    });
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+        system.add(pairs[p].vertices, hessians[p]);
+}
+
+double Contact::max_step(const Positions& x, const Positions& d) {
+    assert(x.allFinite() && d.allFinite());
+    State& s = *state_;
+    const PhaseScope scope(*s.times, Phase::ccd);
+    double done = 0, share = 1;
+    while (done < 1) {
+        s.sweep_start = x + done * d;
+        s.sweep_end = x + d;
+        double until = 1;
+        if (!s.candidates.contain(s.sweep_start) || !s.candidates.contain(s.sweep_end)) {
+            const PhaseScope broad_phase(*s.times, Phase::broad_phase);
+            share = s.candidates.find_along(s.sweep_start, d, std::min(share, 1 - done));
+            until = share < 1 - done ? done + share : 1;
+            s.sweep_end = x + until * d;
+        }
+        double length = s.safe_length(StencilKind::point_triangle, x, d, until - done);
+        length = s.safe_length(StencilKind::edge_edge, x, d, length);
+        if (length < until - done)
+            return done + length;
+        done = until;
+    }
+    return 1;
+}
+
+double Contact::min_gap(const Positions& x) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    return state_->active.least_gap();
+}
+
+int Contact::active_pair_count(const Positions& x) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    return static_cast<int>(state_->active.pairs().size());
+}
+
+} // namespace plisse
