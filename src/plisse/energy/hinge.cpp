@@ -1,0 +1,120 @@
+#include <plisse/energy/hinge.h>
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include <plisse/energy/positive_part.h>
+#include <plisse/geometry/dihedral.h>
+
+namespace plisse {
+
+namespace {
+
+Dihedral dihedral_at(const std::array<int, 4>& v, const Positions& x) {
+    return dihedral(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
+}
+
+/// Does the face run along its edge from a to b?
+bool runs_along(const Face& face, int a, int b) {
+    return (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) || (face[2] == a && face[0] == b);
+}
+
+Mat12 outer_product(const Vec12& row) {
+    return row * row.transpose();
+}
+
+/// The projected second derivative of k/2 (theta - rest)^2; `moment` is k (theta - rest). None of the 2x2 matrices has
+/// two positive eigenvalues, so each is one rank-one term.
+Mat12 projected_hessian(const Dihedral& hinge, double stiffness, double moment, HingeHessian kind) {
+    const DihedralModes factors = dihedral_modes(hinge);
+    const double square = 2 * stiffness; // of d theta = -sqrt(2) modes.col(0)
+    Eigen::Matrix<double, 12, 4> roots;
+    for (int k = 0; k < 4; ++k) {
+        Mat2 matrix = moment * factors.curvature[static_cast<std::size_t>(k)];
+        if (k == 0 && kind == HingeHessian::whole)
+            matrix(0, 0) += square;
+        roots.col(k).noalias() = factors.modes.middleCols<2>(2 * k) * positive_root(matrix);
+    }
+    Mat12 hessian = roots.lazyProduct(roots.transpose());
+    if (kind == HingeHessian::parts)
+        hessian += outer_product(std::sqrt(square) * factors.modes.col(0));
+    return hessian;
+}
+
+} // namespace
+
+Hinges interior_hinges(const Connectivity& connectivity, std::span<const Face> faces) {
+    Hinges hinges;
+    for (int e = 0; e < connectivity.edge_count(); ++e) {
+        if (connectivity.is_boundary_edge(e))
+            continue;
+        const auto edge = static_cast<std::size_t>(e);
+        const std::array<int, 2>& sides = connectivity.edge_faces()[edge];
+        const std::array<int, 2>& corners = connectivity.opposite()[edge];
+        auto [a, b] = connectivity.edges()[edge];
+        if (!runs_along(faces[static_cast<std::size_t>(sides[0])], a, b))
+            std::swap(a, b);
+        hinges.vertices.push_back({a, b, corners[0], corners[1]});
+        hinges.faces.push_back(sides);
+    }
+    return hinges;
+}
+
+double bending_rigidity(double youngs_modulus, double poisson_ratio, double thickness) {
+    return youngs_modulus * thickness * thickness * thickness / (12 * (1 - poisson_ratio * poisson_ratio));
+}
+
+HingeEnergy::HingeEnergy(const Positions& rest, std::vector<std::array<int, 4>> hinges, const HingeMaterials& materials,
+                         HingeHessian kind)
+    : hinges_(std::move(hinges)), kind_(kind) {
+    assert(materials.scaled_rigidity.size() == hinges_.size());
+    assert(materials.flat.size() == hinges_.size());
+    stiffness_.reserve(hinges_.size());
+    rest_angles_.reserve(hinges_.size());
+    for (std::size_t h = 0; h < hinges_.size(); ++h) {
+        const Dihedral hinge = dihedral_at(hinges_[h], rest);
+        const double areas = hinge.length * (hinge.height[0] + hinge.height[1]) / 2;
+        assert(areas > 0);
+        stiffness_.push_back(materials.scaled_rigidity[h] * hinge.length * hinge.length / areas);
+        rest_angles_.push_back(materials.flat[h] ? 0.0 : hinge.angle);
+    }
+}
+
+double HingeEnergy::angle(int hinge, const Positions& x) const {
+    const std::array<int, 4>& v = hinges_[static_cast<std::size_t>(hinge)];
+    return dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
+}
+
+double HingeEnergy::value(int hinge, const Positions& x) const {
+    const double turn = angle(hinge, x) - rest_angle(hinge);
+    if (std::isnan(turn))
+        return std::numeric_limits<double>::infinity();
+    return stiffness_[static_cast<std::size_t>(hinge)] / 2 * turn * turn;
+}
+
+void HingeEnergy::gradient(int hinge, const Positions& x, double* gradient) const {
+    const auto h = static_cast<std::size_t>(hinge);
+    const Dihedral state = dihedral_at(hinges_[h], x);
+    const double moment = stiffness_[h] * (state.angle - rest_angles_[h]);
+    Eigen::Map<Vec12>{gradient} = moment * dihedral_gradient(state);
+}
+
+void HingeEnergy::hessian(int hinge, const Positions& x, bool project, double* hessian) const {
+    const auto h = static_cast<std::size_t>(hinge);
+    const Dihedral state = dihedral_at(hinges_[h], x);
+    const double moment = stiffness_[h] * (state.angle - rest_angles_[h]);
+    Eigen::Map<Mat12> result(hessian);
+    if (project && kind_ != HingeHessian::gauss_newton) {
+        result = projected_hessian(state, stiffness_[h], moment, kind_);
+        return;
+    }
+    result = stiffness_[h] * outer_product(dihedral_gradient(state));
+    if (!project)
+        result += moment * dihedral_hessian(state);
+}
+
+} // namespace plisse

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <plisse/energy/element_energy.h>
+#include <plisse/mesh/connectivity.h>
+
+namespace plisse {
+
+/// Interior edges of a mesh as hinges, by edge number.
+struct Hinges {
+    /// The edge as its first face runs along it, then the corner of that face and of the other (geometry/dihedral.h).
+    std::vector<std::array<int, 4>> vertices;
+    std::vector<std::array<int, 2>> faces;
+    int size() const { return static_cast<int>(vertices.size()); }
+};
+Hinges interior_hinges(const Connectivity& connectivity, std::span<const Face> faces);
+
+/// D = E h^3/(12 (1 - nu^2)), N m.
+double bending_rigidity(double youngs_modulus, double poisson_ratio, double thickness);
+
+/// Bending material of each hinge.
+struct HingeMaterials {
+    std::vector<double> scaled_rigidity; ///< c D, N m; c = 1 is plate theory for sheets rolled along mesh lines
+    std::vector<std::uint8_t> flat;      ///< 1: rest angle 0 whatever the rest positions say
+};
+
+/// The Hessian with k = 2 W/(theta - theta_rest)^2 and g = d theta, all positive semi-definite when projected:
+enum class HingeHessian {
+    gauss_newton, ///< k g g^T: the exact Hessian at the rest angle
+    parts,        ///< k g g^T and, projected on its own, k (theta - theta_rest) d2 theta
+    whole         ///< the sum of both, projected: of all such bounds the one of smallest trace
+};
+
+/// Discrete-shell bending over interior edges,
+///   W = c D/2 |e|^2/(A1 + A2) (theta - theta_rest)^2,     |e|, A1, A2 at rest          (DESIGN.md section 4)
+/// Public C-IPC codes use c = 3 (C-IPC 2021). The projection is exact in the coordinates of DihedralModes, in closed
+/// form.
+///
+/// theta lies in [-pi, pi] and theta - theta_rest is taken as it is. Faces that cannot pass through each other keep
+/// theta inside, where W is smooth; wrapping the difference instead would make a sharp rest crease that is turned
+/// inside out jump ahead. Only where nothing keeps the faces apart can theta pass +-pi, and W jump.
+class HingeEnergy : public ElementEnergy {
+public:
+    /// rest: rest positions, m; hinges: four vertices each, of two faces of positive area; one material a hinge.
+    HingeEnergy(const Positions& rest, std::vector<std::array<int, 4>> hinges, const HingeMaterials& materials,
+                HingeHessian kind = HingeHessian::gauss_newton);
+
+    int element_count() const override { return static_cast<int>(hinges_.size()); }
+    std::span<const int> vertices(int hinge) const override { return hinges_[static_cast<std::size_t>(hinge)]; }
+    double value(int hinge, const Positions& x) const override;
+    void gradient(int hinge, const Positions& x, double* gradient) const override;
+    void hessian(int hinge, const Positions& x, bool project, double* hessian) const override;
+
+    double rest_angle(int hinge) const { return rest_angles_[static_cast<std::size_t>(hinge)]; }
+    double angle(int hinge, const Positions& x) const;
+
+private:
+    std::vector<std::array<int, 4>> hinges_;
+    std::vector<double> stiffness_; ///< c D |e|^2/(A1 + A2), N m
+    std::vector<double> rest_angles_;
+    HingeHessian kind_;
+};
+
+} // namespace plisse

@@ -1,0 +1,178 @@
+#include <plisse/energy/neo_hookean.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include <plisse/energy/positive_part.h>
+
+namespace plisse {
+
+namespace {
+
+/// C - I = [[a, c], [c, b]] and det C.
+struct Strain {
+    double a, b, c;
+    double shear_part;      ///< ab - c^2, the determinant of C - I
+    double determinant;     ///< det C
+    double log_determinant; ///< 2 ln J
+    double dilation() const { return a + b + shear_part; }
+};
+
+/// Far from rest det C comes from the cross product, which is exact to round-off where C is nearly singular; near rest
+/// from C - I, where 1 + x - 1 would lose the strain.
+Strain strain_of(const Mat32& F) {
+    Strain strain;
+    strain.a = F.col(0).squaredNorm() - 1;
+    strain.b = F.col(1).squaredNorm() - 1;
+    strain.c = F.col(0).dot(F.col(1));
+    strain.shear_part = strain.a * strain.b - strain.c * strain.c;
+    strain.determinant = F.col(0).cross(F.col(1)).squaredNorm();
+    strain.log_determinant = strain.determinant < 0.5 ? std::log(strain.determinant) : std::log1p(strain.dilation());
+    return strain;
+}
+
+/// x - ln(1 + x) given the logarithm, to round-off relative to x^2.
+double excess_over_log(double x, double log_of_one_plus_x) {
+    if (std::abs(x) > 0.1)
+        return x - log_of_one_plus_x;
+    // ln(1 + x) = 2 artanh z = 2 (z + z^3/3 + ...) with z = x/(2 + x), and x - 2z = x z.
+    const double z = x / (2 + x);
+    const double q = z * z;
+    const double tail =
+        1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * (1.0 / 13 + q * (1.0 / 15))))));
+    return z * (x - 2 * q * tail);
+}
+
+/// Rotation whose first column is the direction in the sheet that is stretched most.
+Mat2 right_singular_vectors(const Strain& strain) {
+    const double d = (strain.a - strain.b) / 2;
+    const double radius = std::sqrt(d * d + strain.c * strain.c);
+    double cosine = 1;
+    double sine = 0;
+    if (radius > 0 && d >= 0) {
+        cosine = std::sqrt((1 + d / radius) / 2);
+        sine = strain.c / radius / (2 * cosine);
+    } else if (radius > 0) {
+        sine = std::sqrt((1 - d / radius) / 2);
+        cosine = strain.c / radius / (2 * sine);
+    }
+    Mat2 right;
+    right << cosine, -sine, sine, cosine;
+    return right;
+}
+
+/// d2w / (dF g_k) (dF g_l) for two directions g in the sheet, given in the basis (v1, v2).
+Mat3 block(const NeoHookeanModes& modes, const Vec2& k, const Vec2& l) {
+    const double same = (modes.flip + modes.twist) / 2;
+    const double crossed = (modes.flip - modes.twist) / 2;
+    const double aa = k[0] * l[0];
+    const double ab = k[0] * l[1];
+    const double ba = k[1] * l[0];
+    const double bb = k[1] * l[1];
+    const auto u1 = modes.left.col(0);
+    const auto u2 = modes.left.col(1);
+    const auto n = modes.left.col(2);
+    const Vec3 row1 = (modes.stretch(0, 0) * aa + same * bb) * u1 + (modes.stretch(0, 1) * ab + crossed * ba) * u2;
+    const Vec3 row2 = (modes.stretch(1, 0) * ba + crossed * ab) * u1 + (modes.stretch(1, 1) * bb + same * aa) * u2;
+    const Vec3 row3 = (modes.lift[0] * aa + modes.lift[1] * bb) * n;
+    return u1 * row1.transpose() + u2 * row2.transpose() + n * row3.transpose();
+}
+
+} // namespace
+
+Lame plane_stress_lame(double youngs_modulus, double poisson_ratio) {
+    return {youngs_modulus / (2 * (1 + poisson_ratio)),
+            youngs_modulus * poisson_ratio / (1 - poisson_ratio * poisson_ratio)};
+}
+
+double neo_hookean_value(const Mat32& F, const Lame& lame) {
+    const Strain strain = strain_of(F);
+    if (!(strain.determinant > 0))
+        return std::numeric_limits<double>::infinity();
+    const double excess = excess_over_log(strain.dilation(), strain.log_determinant) - strain.shear_part;
+    return lame.mu / 2 * excess + lame.lambda / 8 * strain.log_determinant * strain.log_determinant;
+}
+
+Mat32 neo_hookean_stress(const Mat32& F, const Lame& lame) {
+    const Strain strain = strain_of(F);
+    const double pressure = lame.lambda / 2 * strain.log_determinant;
+    // S = [mu (C - I) + lambda ln J I] C^-1, P = F S
+    const double c_squared = strain.c * strain.c;
+    const double s11 = lame.mu * (strain.a * (1 + strain.b) - c_squared) + pressure * (1 + strain.b);
+    const double s22 = lame.mu * (strain.b * (1 + strain.a) - c_squared) + pressure * (1 + strain.a);
+    const double s12 = strain.c * (lame.mu - pressure);
+    Mat32 stress;
+    stress.col(0) = (s11 * F.col(0) + s12 * F.col(1)) / strain.determinant;
+    stress.col(1) = (s12 * F.col(0) + s22 * F.col(1)) / strain.determinant;
+    return stress;
+}
+
+Vec2 principal_stretches(const Mat32& F) {
+    const double trace = F.squaredNorm();
+    const double J = F.col(0).cross(F.col(1)).norm();
+    // (s1 +- s2)^2 = tr C +- 2 J
+    const double sum = std::sqrt(trace + 2 * J);
+    const double d = (F.col(0).squaredNorm() - F.col(1).squaredNorm()) / 2;
+    const double difference = 2 * std::hypot(d, F.col(0).dot(F.col(1))) / sum;
+    const double largest = (sum + difference) / 2;
+    return {largest, J / largest};
+}
+
+NeoHookeanModes neo_hookean_modes(const Mat32& F, const Lame& lame, bool project) {
+    const Strain strain = strain_of(F);
+    const double J = std::sqrt(strain.determinant);
+    NeoHookeanModes modes;
+    modes.right = right_singular_vectors(strain);
+    const Vec3 image = F * modes.right.col(0);
+    const double s1 = image.norm();
+    const double s2 = J / s1;
+    modes.left.col(0) = image / s1;
+    modes.left.col(2) = F.col(0).cross(F.col(1)) / J;
+    modes.left.col(1) = modes.left.col(2).cross(modes.left.col(0));
+
+    const double pressure = lame.lambda / 2 * strain.log_determinant;
+    const double drop = lame.mu - pressure;
+    const double inverse1 = 1 / (s1 * s1);
+    const double inverse2 = 1 / (s2 * s2);
+    modes.stretch << lame.mu + (drop + lame.lambda) * inverse1, lame.lambda / J, lame.lambda / J,
+        lame.mu + (drop + lame.lambda) * inverse2;
+    modes.twist = lame.mu - drop / J;
+    modes.flip = lame.mu + drop / J;
+    modes.lift << lame.mu - drop * inverse1, lame.mu - drop * inverse2;
+    if (project) {
+        modes.stretch = positive_part(modes.stretch);
+        modes.twist = std::max(modes.twist, 0.0);
+        modes.flip = std::max(modes.flip, 0.0);
+        modes.lift = modes.lift.cwiseMax(0.0);
+    }
+    return modes;
+}
+
+Mat6 neo_hookean_hessian(const NeoHookeanModes& modes) {
+    const Mat2 axes = modes.right.transpose();
+    Mat6 hessian;
+    for (int l = 0; l < 2; ++l)
+        for (int k = 0; k < 2; ++k)
+            hessian.block<3, 3>(3 * k, 3 * l) = block(modes, axes.col(k), axes.col(l));
+    return hessian;
+}
+
+Mat9 pull_back(const NeoHookeanModes& modes, const Mat2& inverse, double scale) {
+    // Corner k moves F by dx_k g_k^T with g_1, g_2 the rows of `inverse` and g_0 = -g_1 - g_2: rows add up to zero.
+    const Mat2 axes = modes.right.transpose() * inverse.transpose();
+    const Mat3 h11 = scale * block(modes, axes.col(0), axes.col(0));
+    const Mat3 h12 = scale * block(modes, axes.col(0), axes.col(1));
+    const Mat3 h22 = scale * block(modes, axes.col(1), axes.col(1));
+    const Mat3 h10 = -(h11 + h12);
+    const Mat3 h20 = -(h12.transpose() + h22);
+    Mat9 hessian;
+    hessian << -(h10 + h20), h10.transpose(), h20.transpose(), //
+        h10, h11, h12,                                         //
+        h20, h12.transpose(), h22;
+    return hessian;
+}
+
+} // namespace plisse
