@@ -2,8 +2,14 @@
 
 #include <plisse/base/error.h>
 
+#include "check_command.h"
 #include "exit_status.h"
+#include "hierarchy_command.h"
 #include "later_commands.h"
+#include "prolong_command.h"
+#include "render_command.h"
+#include "report_command.h"
+#include "run_command.h"
 #include "schema_command.h"
 
 namespace {
@@ -25,6 +31,13 @@ ExitCode complain_about_arguments(const CLI::App& app, const CLI::ParseError& er
 }
 
 void add_commands(CLI::App& app) {
+    plisse::add_run_command(app);
+    plisse::add_check_command(app);
+    plisse::add_hierarchy_command(app);
+    plisse::add_prolong_command(app);
+    plisse::add_render_command(app);
+    plisse::add_report_command(app);
+    plisse::add_schema_command(app);
     plisse::add_later_commands(app);
 }
 

@@ -106,7 +106,7 @@ void describe_sizes(Visitor& v, GeneratorOptions& g) {
     if (shape == S::cylinder)
         v.field("caps", g.caps, "whether the ends are closed");
     if (shape == S::dome)
-        v.field("angle_deg", g.angle_deg, Limits{1, 179}, "degrees from the apex to the rim");
+        v.field("angle_deg", g.angle_deg, Limits{1, 175}, "degrees from the apex to the rim");
     if (shape == S::torus) {
         v.field("tube", g.tube, positive, "m, radius of the tube");
         v.check(g.tube < g.radius, "tube", "the tube is as thick as its ring", "give a tube below radius");
@@ -117,11 +117,11 @@ void describe_sizes(Visitor& v, GeneratorOptions& g) {
         v.check(g.inner < g.outer, "inner", "inner is not below outer", "give an inner radius below outer");
     }
     if (shape == S::pumpkin)
-        v.field("lobes", g.lobes, Limits{3, 64}, "how many lobes");
+        v.field("lobes", g.lobes, Limits{3, 100}, "how many lobes");
     if (shape == S::star) {
-        v.field("points", g.points, Limits{3, 64}, "how many points");
+        v.field("points", g.points, Limits{3, 1000}, "how many points");
         v.field("depth", g.depth, Limits{0.01, 0.9}, "how far the notches go in, as a share of radius");
-        v.field("twist_deg", g.twist_deg, Limits{-360, 360}, "degrees that the top is turned against the bottom");
+        v.field("twist_deg", g.twist_deg, Limits{-179, 179}, "degrees that the top is turned against the bottom");
     }
 }
 

@@ -1,0 +1,167 @@
+#include "hierarchy_command.h"
+
+#include <memory>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <plisse/base/error.h>
+#include <plisse/base/parallel.h>
+#include <plisse/decimate/decimate.h>
+#include <plisse/decimate/hierarchy_statistics.h>
+#include <plisse/mesh/check_mesh.h>
+#include <plisse/mesh/connectivity.h>
+#include <plisse/mesh/read_mesh.h>
+#include <plisse/scene/hierarchy_folder.h>
+#include <plisse/scene/verify_hierarchy.h>
+#include <plisse/scene/whole_file.h>
+
+#include "exit_status.h"
+
+namespace plisse {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct HierarchyArguments {
+    std::string mesh, folder;
+    int levels = 3, coarsest = 500, threads = 0;
+    bool verify = false;
+};
+
+/// Intersections stop a run but not a decimation; everything else that check finds does.
+TriangleMesh read_decimatable(const std::string& file) {
+    MeshFile read = read_mesh(file);
+    for (const std::string& note : read.notes)
+        fmt::print(stderr, "plisse: {}: {}\n", file, note);
+    MeshCheck check = check_mesh(read.mesh);
+    if (!check.intersecting_faces.empty())
+        fmt::print(stderr, "plisse: {}: {} pairs of faces intersect: a run would refuse this mesh\n", file,
+                   check.intersecting_faces.size());
+    check.intersecting_faces.clear();
+    if (!check.usable())
+        throw InputError(file, fmt::format("{}", fmt::join(describe_findings(check, read.mesh), ", ")),
+                         "repair the mesh (`plisse check` lists everything)");
+    return std::move(read.mesh);
+}
+
+Json level_json(int number, const LevelStatistics& s, const DecimationSummary& summary) {
+    const auto level = static_cast<std::size_t>(number);
+    return {{"level", number},
+            {"file", fmt::format("level-{}.ply", number)},
+            {"vertices", s.topology.vertices},
+            {"faces", s.topology.faces},
+            {"wanted_vertices", summary.wanted_vertices.at(level)},
+            {"components", s.topology.components},
+            {"boundary_loops", s.topology.boundary_loops},
+            {"euler_characteristic", s.topology.euler_characteristic},
+            {"quality", {{"worst", s.worst_quality}, {"mean", s.mean_quality}, {"median", s.median_quality}}},
+            {"map_error", {{"mean", s.mean_map_error}, {"largest", s.largest_map_error}}}};
+}
+
+Json hierarchy_json(const std::string& input, const std::vector<LevelStatistics>& statistics,
+                    const DecimationSummary& summary) {
+    Json json = {{"plisse", PLISSE_VERSION}, {"input", input}, {"levels", Json::array()}};
+    for (std::size_t l = 0; l < statistics.size(); ++l)
+        json["levels"].push_back(level_json(static_cast<int>(l), statistics[l], summary));
+    json["ran_dry"] = summary.ran_dry;
+    json["topology_kept"] = summary.topology_kept;
+    for (int r = 0; r < rejection_count; ++r)
+        json["rejections"][rejection_name(static_cast<Rejection>(r))] = summary.rejections[static_cast<std::size_t>(r)];
+    json["relocations"] = summary.relocations;
+    json["location_errors"] = summary.location_errors;
+    json["worst_location"] = summary.worst_location;
+    json["seconds"] = {
+        {"total", summary.total_seconds}, {"collapse", summary.collapse_seconds}, {"map", summary.map_seconds}};
+    return json;
+}
+
+Json verification_json(const LevelVerification& v) {
+    return {{"level", v.level},
+            {"rest_error", v.rest_error},
+            {"rigid_error", v.rigid_error},
+            {"worst_weight", v.worst_weight},
+            {"worst_weight_sum", v.worst_sum},
+            {"missing_anchors", v.missing_anchors},
+            {"coincident_images", v.coincident_images},
+            {"mapped_faces", v.mapped_faces},
+            {"folded_faces", v.folded_faces},
+            {"holds", v.holds()}};
+}
+
+void print_levels(const std::vector<LevelStatistics>& statistics, const DecimationSummary& summary) {
+    fmt::print("{:>5} {:>9} {:>9} {:>13} {:>14} {:>15}\n", "level", "vertices", "faces", "mean quality",
+               "worst quality", "mean map error");
+    for (std::size_t l = 0; l < statistics.size(); ++l)
+        fmt::print("{:>5} {:>9} {:>9} {:>13.3f} {:>14.3f} {:>15.3g}\n", l, statistics[l].topology.vertices,
+                   statistics[l].topology.faces, statistics[l].mean_quality, statistics[l].worst_quality,
+                   statistics[l].mean_map_error);
+    fmt::print("{:.2f} s, of which the map took {:.2f} s\n", summary.total_seconds, summary.map_seconds);
+    if (summary.ran_dry)
+        fmt::print("no edge could be collapsed any more before the coarsest size was reached\n");
+}
+
+/// Prints the measures; true when they all hold.
+bool print_verification(const std::vector<LevelVerification>& verifications, const DecimationSummary& summary) {
+    bool holds = summary.location_errors == 0 && summary.topology_kept;
+    for (const LevelVerification& v : verifications) {
+        fmt::print("level {}: rest recovery error {:.2e} of the diagonal, rigid-motion error {:.2e} of the diagonal\n",
+                   v.level, v.rest_error, v.rigid_error);
+        fmt::print(
+            "  map: smallest weight {:.1e}, sum off by {:.1e}, vertices without anchor {}, coincident images {}, "
+            "faces folded {} of {}: {}\n",
+            v.worst_weight, v.worst_sum, v.missing_anchors, v.coincident_images, v.folded_faces, v.mapped_faces,
+            v.holds() ? "holds" : "does NOT hold");
+        holds = holds && v.holds();
+    }
+    fmt::print("points carried outside their patch: {} (worst {:.1e}), topology {}\n", summary.location_errors,
+               summary.worst_location, summary.topology_kept ? "kept" : "NOT kept");
+    return holds;
+}
+
+void build_hierarchy(const HierarchyArguments& arguments) {
+    const TriangleMesh mesh = read_decimatable(arguments.mesh);
+    const ThreadLimit limit(arguments.threads);
+    // Components never merge, so one part is enough.
+    const std::vector<int> part(static_cast<std::size_t>(mesh.vertex_count()), 0);
+    DecimationOptions options;
+    options.levels = arguments.levels;
+    options.coarsest_vertices = arguments.coarsest;
+    DecimationSummary summary;
+    const Hierarchy hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, options, nullptr, &summary);
+    const std::vector<LevelStatistics> statistics = hierarchy_statistics(hierarchy);
+
+    Json json = hierarchy_json(arguments.mesh, statistics, summary);
+    print_levels(statistics, summary);
+    bool holds = true;
+    if (arguments.verify) {
+        const std::vector<LevelVerification> verifications = verify_hierarchy(hierarchy);
+        for (const LevelVerification& v : verifications)
+            json["verification"].push_back(verification_json(v));
+        holds = print_verification(verifications, summary);
+    }
+    std::filesystem::create_directories(arguments.folder);
+    write_hierarchy(arguments.folder, hierarchy, mesh.attributes);
+    write_file_atomically(std::filesystem::path(arguments.folder) / "hierarchy.json", json.dump(2) + "\n");
+    if (!holds)
+        throw ExitStatus{ExitCode::failed};
+}
+
+} // namespace
+
+void add_hierarchy_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("hierarchy", "Decimates a mesh into nested levels");
+    auto arguments = std::make_shared<HierarchyArguments>();
+    command->add_option("MESH", arguments->mesh, "OBJ, PLY, STL or OFF file")->required();
+    command->add_option("-o,--output", arguments->folder, "folder for the levels and the map")->required();
+    command->add_option("--levels", arguments->levels, "meshes in all, the input included")->check(CLI::Range(1, 20));
+    command->add_option("--coarsest", arguments->coarsest, "vertices of level 0")->check(CLI::Range(4, 1 << 30));
+    command->add_option("--threads", arguments->threads, "threads; 0: one a processor")->check(CLI::Range(0, 1024));
+    command->add_flag("--verify", arguments->verify,
+                      "measures rest-shape recovery, rigid motions and the map's bijectivity");
+    command->callback([arguments] { build_hierarchy(*arguments); });
+}
+
+} // namespace plisse

@@ -1,0 +1,121 @@
+#include <plisse/scene/verify_hierarchy.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <plisse/base/random.h>
+#include <plisse/model/track.h>
+#include <plisse/spatial/box.h>
+#include <plisse/transfer/prolongation.h>
+
+namespace plisse {
+
+namespace {
+
+/// Over the vertices that have an anchor: the others stay where they are, whatever moves.
+double largest_distance(const std::vector<Anchor>& anchors, const Positions& a, const Positions& b) {
+    double squared = 0;
+    for (std::size_t v = 0; v < anchors.size(); ++v)
+        if (anchors[v].face >= 0) {
+            const auto column = static_cast<Eigen::Index>(v);
+            squared = std::max(squared, (a.col(column) - b.col(column)).squaredNorm());
+        }
+    return std::sqrt(squared);
+}
+
+double measure_rigid_error(const Prolongation& prolongation, const Positions& coarse, double diagonal) {
+    Random random(1);
+    double worst = 0;
+    const Positions fine = prolongation.apply(coarse);
+    for (int trial = 0; trial < 5; ++trial) {
+        const Mat3 rotation =
+            rotation_xyz(Vec3(random.uniform(-180, 180), random.uniform(-180, 180), random.uniform(-180, 180)));
+        const Vec3 shift = diagonal * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        const Positions moved = (rotation * coarse).colwise() + shift;
+        const Positions expected = (rotation * fine).colwise() + shift;
+        worst = std::max(worst, largest_distance(prolongation.anchors(), prolongation.apply(moved), expected));
+    }
+    return worst;
+}
+
+/// Positions bent by a smooth wave, so that the rigid test meets offsets in deformed triangles too.
+Positions waved(const Positions& x, double diagonal) {
+    Positions y = x;
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+        y.col(i) += 0.02 * diagonal * (x.col(i) * (6 / diagonal)).array().sin().matrix();
+    return y;
+}
+
+void measure_weights(const HierarchyLevel& level, const HierarchyLevel& finest, LevelVerification& result) {
+    std::vector<bool> used(level.to_finest.size(), false);
+    for (const Face& face : finest.faces)
+        for (int v : face)
+            used[static_cast<std::size_t>(v)] = true;
+    for (std::size_t v = 0; v < used.size(); ++v) {
+        const Anchor& anchor = level.to_finest[v];
+        if (used[v] && anchor.face < 0)
+            ++result.missing_anchors;
+        if (anchor.face < 0)
+            continue;
+        result.worst_weight = std::min(result.worst_weight, anchor.weights.minCoeff());
+        result.worst_sum = std::max(result.worst_sum, std::abs(1 - anchor.weights.sum()));
+    }
+}
+
+void measure_coincidences(const HierarchyLevel& level, LevelVerification& result) {
+    std::vector<std::array<double, 3>> images;
+    for (const Anchor& anchor : level.to_finest)
+        if (anchor.face >= 0) {
+            Vec3 p = Vec3::Zero();
+            for (int k = 0; k < 3; ++k)
+                p += anchor.weights[k] *
+                     level.rest.col(level.faces[static_cast<std::size_t>(anchor.face)][static_cast<std::size_t>(k)]);
+            images.push_back({p.x(), p.y(), p.z()});
+        }
+    std::sort(images.begin(), images.end());
+    for (std::size_t i = 1; i < images.size(); ++i)
+        result.coincident_images += images[i] == images[i - 1] ? 1 : 0;
+}
+
+void measure_folds(const HierarchyLevel& level, const HierarchyLevel& finest, LevelVerification& result) {
+    for (const Face& face : finest.faces) {
+        std::array<const Anchor*, 3> corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = &level.to_finest[static_cast<std::size_t>(face[k])];
+        if (corners[0]->face < 0 || corners[1]->face != corners[0]->face || corners[2]->face != corners[0]->face)
+            continue;
+        ++result.mapped_faces;
+        Mat3 weights;
+        for (int k = 0; k < 3; ++k)
+            weights.col(k) = corners[static_cast<std::size_t>(k)]->weights;
+        result.folded_faces += weights.determinant() < 0 ? 1 : 0; // twice the signed area, the coarse face's being 1
+    }
+}
+
+} // namespace
+
+bool LevelVerification::holds() const {
+    return rest_error <= 1e-10 && rigid_error <= 1e-10 && worst_weight >= 0 && worst_sum <= 1e-12 &&
+           missing_anchors == 0 && coincident_images == 0;
+}
+
+std::vector<LevelVerification> verify_hierarchy(const Hierarchy& hierarchy) {
+    const HierarchyLevel& finest = hierarchy.finest();
+    const double diagonal = bounding_box(finest.rest).diagonal();
+    std::vector<LevelVerification> results;
+    for (int l = 0; l + 1 < hierarchy.level_count(); ++l) {
+        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(l)];
+        const Prolongation prolongation(level.rest, level.faces, level.to_finest, finest.rest);
+        LevelVerification& result = results.emplace_back();
+        result.level = l;
+        result.rest_error = largest_distance(level.to_finest, prolongation.apply(level.rest), finest.rest) / diagonal;
+        result.rigid_error = measure_rigid_error(prolongation, waved(level.rest, diagonal), diagonal) / diagonal;
+        measure_weights(level, finest, result);
+        measure_coincidences(level, result);
+        measure_folds(level, finest, result);
+    }
+    return results;
+}
+
+} // namespace plisse
