@@ -173,7 +173,18 @@ std::optional<Rejection> EdgeCollapser::judge_shapes() {
 }
 
 void EdgeCollapser::commit(Alias alias) {
-    const Edge edge{patch_.i, patch_.j};
+    record();
+    merge_vertices(alias);
+    placer_.merge({patch_.i, patch_.j});
+    faces_.collapse(made_.collapses.back());
+    for (std::size_t n = 0; n < patch_.after.size(); ++n)
+        shapes_[patch_.after_face(n)] = patch_.after_shapes[n];
+    if (clearance_)
+        clearance_->apply(patch_);
+    update_queue();
+}
+
+void EdgeCollapser::record() {
     Collapse& collapse = made_.collapses.emplace_back();
     collapse = {.i = patch_.i,
                 .j = patch_.j,
@@ -189,7 +200,9 @@ void EdgeCollapser::commit(Alias alias) {
     for (int f : patch_.dead_faces)
         collapse.dead_corners.push_back(faces_.face(f));
     made_.charts.push_back(chart_);
+}
 
+void EdgeCollapser::merge_vertices(Alias alias) {
     const VertexState &i = made_.vertices[patch_.i], &j = made_.vertices[patch_.j];
     const VertexState& leaving = alias == Alias::i ? j : i;
     if (leaving.label >= 0)
@@ -200,14 +213,6 @@ void EdgeCollapser::commit(Alias alias) {
     merged.handle_border = i.handle_border || j.handle_border;
     made_.vertices.push_back(merged);
     made_.counted_left.push_back(groups_[0].left);
-
-    placer_.merge(edge);
-    faces_.collapse(collapse);
-    for (std::size_t n = 0; n < patch_.after.size(); ++n)
-        shapes_[patch_.after_face(n)] = patch_.after_shapes[n];
-    if (clearance_)
-        clearance_->apply(patch_);
-    update_queue();
 }
 
 void EdgeCollapser::update_queue() {

@@ -45,6 +45,8 @@ private:
     bool handle_allows(Alias alias) const;
     std::optional<Rejection> judge_shapes();
     void commit(Alias alias);
+    void record();
+    void merge_vertices(Alias alias);
     void update_queue();
 
     const DecimationOptions options_;
