@@ -23,26 +23,18 @@ bool runs_along(const Face& face, int a, int b) {
     return (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) || (face[2] == a && face[0] == b);
 }
 
-Mat12 outer_product(const Vec12& row) {
-    return row * row.transpose();
-}
-
-/// The projected second derivative of k/2 (theta - rest)^2; `moment` is k (theta - rest). None of the 2x2 matrices has
-/// two positive eigenvalues, so each is one rank-one term.
-Mat12 projected_hessian(const Dihedral& hinge, double stiffness, double moment, HingeHessian kind) {
-    const DihedralModes factors = dihedral_modes(hinge);
-    const double square = 2 * stiffness; // of d theta = -sqrt(2) modes.col(0)
+/// Positive part of the Hessian of k/2 (theta - rest)^2; `moment` is k (theta - rest). None of the 2x2 matrices has two
+/// positive eigenvalues, so each is one rank-one term.
+Mat12 projected_hessian(const Dihedral& hinge, double stiffness, double moment) {
+    DihedralModes factors = dihedral_modes(hinge);
+    for (Mat2& matrix : factors.curvature)
+        matrix *= moment;
+    factors.curvature[0](0, 0) += 2 * stiffness; // d theta = -sqrt(2) modes.col(0)
     Eigen::Matrix<double, 12, 4> roots;
-    for (int k = 0; k < 4; ++k) {
-        Mat2 matrix = moment * factors.curvature[static_cast<std::size_t>(k)];
-        if (k == 0 && kind == HingeHessian::whole)
-            matrix(0, 0) += square;
-        roots.col(k).noalias() = factors.modes.middleCols<2>(2 * k) * positive_root(matrix);
-    }
-    Mat12 hessian = roots.lazyProduct(roots.transpose());
-    if (kind == HingeHessian::parts)
-        hessian += outer_product(std::sqrt(square) * factors.modes.col(0));
-    return hessian;
+    for (int k = 0; k < 4; ++k)
+        roots.col(k).noalias() =
+            factors.modes.middleCols<2>(2 * k) * positive_root(factors.curvature[static_cast<std::size_t>(k)]);
+    return roots.lazyProduct(roots.transpose());
 }
 
 } // namespace
@@ -108,11 +100,12 @@ void HingeEnergy::hessian(int hinge, const Positions& x, bool project, double* h
     const Dihedral state = dihedral_at(hinges_[h], x);
     const double moment = stiffness_[h] * (state.angle - rest_angles_[h]);
     Eigen::Map<Mat12> result(hessian);
-    if (project && kind_ != HingeHessian::gauss_newton) {
-        result = projected_hessian(state, stiffness_[h], moment, kind_);
+    if (project && kind_ == HingeHessian::projected) {
+        result = projected_hessian(state, stiffness_[h], moment);
         return;
     }
-    result = stiffness_[h] * outer_product(dihedral_gradient(state));
+    const Vec12 slope = dihedral_gradient(state);
+    result.noalias() = (stiffness_[h] * slope) * slope.transpose();
     if (!project)
         result += moment * dihedral_hessian(state);
 }

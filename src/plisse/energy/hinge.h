@@ -26,11 +26,11 @@ struct HingeMaterials {
     std::vector<std::uint8_t> flat;      ///< 1: rest angle 0 whatever the rest positions say
 };
 
-/// The Hessian with k = 2 W/(theta - theta_rest)^2 and g = d theta, all positive semi-definite when projected:
+/// What stands for the Hessian k g g^T + k (theta - theta_rest) d2 theta, with k = 2 W/(theta - theta_rest)^2 and
+/// g = d theta, where a positive semi-definite one is asked for.
 enum class HingeHessian {
-    gauss_newton, ///< k g g^T: the exact Hessian at the rest angle
-    parts,        ///< k g g^T and, projected on its own, k (theta - theta_rest) d2 theta
-    whole         ///< the sum of both, projected: of all such bounds the one of smallest trace
+    gauss_newton, ///< k g g^T: exact at the rest angle
+    projected     ///< the positive part of the whole
 };
 
 /// Discrete-shell bending over interior edges,
