@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 
 #include <plisse/base/error.h>
+#include <plisse/mesh/mesh_formats.h>
 #include <plisse/mesh/portable_math.h>
 #include <plisse/mesh/shapes.h>
+#include <plisse/spatial/intersections.h>
 
 namespace plisse {
 
@@ -105,6 +107,14 @@ void check_options(const GeneratorOptions& options) {
         fmt::format("give an edge_length of at least {:.2g}", std::sqrt(area / (row_height * most_vertices)) * 1.01));
 }
 
+/// The options with an edge length that the shape can have: a torus with fewer than eight edges around its tube would
+/// meet itself.
+GeneratorOptions with_possible_edge(GeneratorOptions options) {
+    if (options.shape == GeneratorShape::torus)
+        options.edge_length = std::min(options.edge_length, 0.75 * options.tube);
+    return options;
+}
+
 Shape make_shape(const GeneratorOptions& options) {
     switch (options.shape) {
     case GeneratorShape::sheet:
@@ -174,18 +184,25 @@ void make_irregular(PatchMesh& mesh, const Projection& project, const GeneratorO
     relax(mesh, rounds, project);
 }
 
+/// A thin or much twisted star needs edges short beside the gaps between its walls.
+void refuse_meeting_walls(const TriangleMesh& mesh) {
+    if (!intersecting_pairs(mesh.positions, mesh.faces, {}, 1).empty())
+        refuse("the star's walls meet in a mesh as coarse as this", "give a smaller edge_length, twist_deg or depth");
+}
+
 } // namespace
 
-TriangleMesh generate_mesh(const GeneratorOptions& options) {
-    check_options(options);
+TriangleMesh generate_mesh(const GeneratorOptions& requested) {
+    check_options(requested);
+    const GeneratorOptions options = with_possible_edge(requested);
     Shape shape = make_shape(options);
     if (options.pattern == Pattern::irregular)
         make_irregular(shape.mesh, shape.project, options);
     TriangleMesh mesh;
-    mesh.positions.resize(3, static_cast<Eigen::Index>(shape.mesh.points.size()));
-    for (std::size_t i = 0; i < shape.mesh.points.size(); ++i)
-        mesh.positions.col(static_cast<Eigen::Index>(i)) = shape.mesh.points[i];
+    mesh.positions = to_positions(shape.mesh.points);
     mesh.faces = std::move(shape.mesh.faces);
+    if (options.shape == GeneratorShape::star)
+        refuse_meeting_walls(mesh);
     return mesh;
 }
 

@@ -24,6 +24,7 @@ double small_cos(double x) {
 } // namespace
 
 CosSin cos_sin_turns(double turns) {
+    const double half_root = std::sqrt(0.5);
     double part = turns - std::floor(turns); // [0, 1]
     const bool below = part > 0.5;
     if (below)
@@ -33,8 +34,10 @@ CosSin cos_sin_turns(double turns) {
         part = 0.5 - part;
     const bool steep = part > 0.125;
     const double angle = 2 * pi * (steep ? 0.25 - part : part);
-    double c = steep ? small_sin(angle) : small_cos(angle);
-    double s = steep ? small_cos(angle) : small_sin(angle);
+    if (part == 0.125)
+        return {left ? -half_root : half_root, below ? -half_root : half_root};
+    const double c = steep ? small_sin(angle) : small_cos(angle);
+    const double s = steep ? small_cos(angle) : small_sin(angle);
     return {left ? -c : c, below ? -s : s};
 }
 

@@ -51,14 +51,9 @@ Positions to_positions(const std::vector<Vec3>& points) {
     return positions;
 }
 
-std::string vertex_total(std::size_t count) {
-    return std::to_string(count) + (count == 1 ? " vertex" : " vertices");
-}
-
-MeshFile read_mesh(const std::filesystem::path& path) {
+MeshFile parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
     const std::string file = path.string();
     const std::string extension = lower_extension(path);
-    const std::string bytes = read_bytes(path);
     if (bytes.empty())
         throw InputError(file, "is empty", std::string("give a mesh file in ") + formats);
     MeshFile result;
@@ -78,6 +73,10 @@ MeshFile read_mesh(const std::filesystem::path& path) {
     if (result.mesh.face_count() == 0)
         throw InputError(file, "has no faces", "give a mesh with at least one triangle");
     return result;
+}
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+    return parse_mesh(read_bytes(path), path);
 }
 
 } // namespace plisse

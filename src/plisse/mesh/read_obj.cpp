@@ -93,13 +93,13 @@ private:
     /// v, v/vt, v//vn or v/vt/vn. Normals are not used, so only the form of their index is checked.
     void read_corner(std::string_view word) {
         const std::size_t first = word.find('/');
-        corners_.push_back(resolve(word.substr(0, first), points_.size(), false));
+        corners_.push_back(resolve(word, word.substr(0, first), false));
         int texture = -1;
         if (first != word.npos) {
             const std::string_view rest = word.substr(first + 1);
             const std::size_t second = rest.find('/');
             if (second != 0)
-                texture = resolve(rest.substr(0, second), texture_points_.size(), true);
+                texture = resolve(word, rest.substr(0, second), true);
             long long normal = 0;
             if (second != rest.npos && !parse_integer(rest.substr(second + 1), normal))
                 bad_corner(word);
@@ -112,11 +112,12 @@ private:
         lines_.fail(in_quotes(word) + " is no face corner", "write a corner as v, v/vt, v//vn or v/vt/vn");
     }
 
-    int resolve(std::string_view word, std::size_t count, bool texture) {
+    /// The element that the index in a corner stands for, counted from 0.
+    int resolve(std::string_view corner, std::string_view word, bool texture) {
         long long index = 0;
         if (!parse_integer(word, index))
-            bad_corner(word);
-        const auto known = static_cast<long long>(count);
+            bad_corner(corner);
+        const auto known = static_cast<long long>(texture ? texture_points_.size() : points_.size());
         const char* kind = texture ? "texture point " : "vertex ";
         if (index == 0 || index < -known)
             lines_.fail(std::string("a face refers to ") + kind + std::to_string(index) + ", of " +
