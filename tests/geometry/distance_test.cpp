@@ -65,6 +65,8 @@ TEST(Distance, AgreesWithBruteForce) {
             const Separation s = edges ? separate_edges(x) : separate_point_triangle(x);
             expect_consistent(s, x);
             EXPECT_NEAR(std::sqrt(s.squared_distance), std::sqrt(brute_force_squared_distance(x, edges)), 1e-7);
+            const double alone = edges ? squared_distance_edges(x) : squared_distance_point_triangle(x);
+            EXPECT_NEAR(alone, s.squared_distance, 1e-14);
             ++seen[s.corners];
         }
         EXPECT_EQ(seen.size(), edges ? 9U : 7U); // every feature comes up

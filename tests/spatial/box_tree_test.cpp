@@ -82,7 +82,7 @@ TEST(BoxTree, CrossQueryAndFilterAgreeWithBruteForce) {
     const auto left = random_boxes(random, 700, 1, Vec3::Zero()), right = random_boxes(random, 90, 1, Vec3::Zero());
     const auto accept = [](int i, int j) { return (i + j) % 3 != 0; };
     OverlapPairs found;
-    ASSERT_TRUE(found.find_between(left, BoxTree(right), accept, no_limit));
+    ASSERT_TRUE(found.find_between(BoxTree(left), BoxTree(right), accept, no_limit));
     std::set<std::array<int, 2>> expected;
     for (int i = 0; i < 700; ++i)
         for (int j = 0; j < 90; ++j)
@@ -90,8 +90,8 @@ TEST(BoxTree, CrossQueryAndFilterAgreeWithBruteForce) {
                 expected.insert({i, j});
     EXPECT_EQ(std::set(found.pairs().begin(), found.pairs().end()), expected);
     EXPECT_EQ(found.pairs().size(), expected.size());
-    EXPECT_TRUE(found.find_between(left, BoxTree(right), accept, expected.size()));
-    EXPECT_FALSE(found.find_between(left, BoxTree(right), accept, expected.size() - 1));
+    EXPECT_TRUE(found.find_between(BoxTree(left), BoxTree(right), accept, expected.size()));
+    EXPECT_FALSE(found.find_between(BoxTree(left), BoxTree(right), accept, expected.size() - 1));
     EXPECT_TRUE(found.pairs().empty());
 }
 

@@ -12,8 +12,10 @@ namespace {
 constexpr int chunk_size = 512;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two parallel sheets of like triangles meet in about A / min(area) point-triangle pairs, from both sides, and 2.2 A /
-/// min(area) crossing edges per area A; with these shares the pressure between them is that of one barrier per area.
+/// Two parallel sheets of like triangles meet, per area A, in 2 A / vertex area point-triangle pairs, from both sides,
+/// and in about 2.4 A / edge area crossing edges: with these shares the pressure between them comes to 1.1 times that
+/// of one barrier per area, plus what edges and corners beside each other add (measured: 1.3 to 1.4 in all where the
+/// contact distance is a tenth of the edges, 2 where it is a third), on fine meshes as on coarse ones.
 constexpr double point_triangle_share = 0.5, edge_edge_share = 0.25;
 
 /// Distance below which a pair begins to repel. A pair that touches at rest has no silent rest to protect.
@@ -30,6 +32,7 @@ ActiveSet::ActiveSet(const CollisionMesh& mesh, const ContactOptions& options) :
 }
 
 void ActiveSet::find(const Candidates& candidates, const Positions& x) {
+    candidates.find_drift(x, x, drift_);
     const int first_count = candidates.size(StencilKind::point_triangle);
     const int second_count = candidates.size(StencilKind::edge_edge);
     const int first_chunks = chunk_count(first_count, chunk_size);
@@ -64,9 +67,11 @@ void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int b
         const double activation = activation_distance(options_.distance, rest_distance);
         const bool counts_as_gap = rest_distance >= options_.distance;
         const double range = counts_as_gap ? options_.distance : activation;
+        if (candidates.least_distance(kind, i, drift_) >= range)
+            continue;
         const auto vertices = candidates.vertices(kind, i);
         const Stencil stencil = gather(x, vertices);
-        if (squared_box_distance(kind, stencil) >= range * range)
+        if (squared_sweep_distance(kind, stencil, stencil) >= range * range)
             continue;
         const Separation separation = separate(kind, stencil);
         if (counts_as_gap && separation.squared_distance < range * range)

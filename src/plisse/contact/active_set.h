@@ -41,6 +41,7 @@ private:
     const CollisionMesh& mesh_;
     ContactOptions options_;
     std::vector<double> edge_length_squared_; ///< at rest
+    Candidates::Drift drift_;
     std::vector<Chunk> chunks_;
     std::vector<ActivePair> pairs_;
     double energy_ = 0, least_gap_ = 0;

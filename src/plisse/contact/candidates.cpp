@@ -26,12 +26,14 @@ double region_slack(const CollisionMesh& mesh, double distance) {
 
 } // namespace
 
-double squared_box_distance(StencilKind kind, const Stencil& x) {
+double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stencil& to) {
+    const Stencil low = from.cwiseMin(to), high = from.cwiseMax(to);
     const int first = kind == StencilKind::point_triangle ? 1 : 2;
-    const Vec3 low = x.leftCols(first).rowwise().minCoeff(), high = x.leftCols(first).rowwise().maxCoeff();
-    const Vec3 other_low = x.rightCols(4 - first).rowwise().minCoeff();
-    const Vec3 other_high = x.rightCols(4 - first).rowwise().maxCoeff();
-    return (low - other_high).cwiseMax(other_low - high).cwiseMax(0.0).squaredNorm();
+    const Vec3 first_low = low.leftCols(first).rowwise().minCoeff();
+    const Vec3 first_high = high.leftCols(first).rowwise().maxCoeff();
+    const Vec3 second_low = low.rightCols(4 - first).rowwise().minCoeff();
+    const Vec3 second_high = high.rightCols(4 - first).rowwise().maxCoeff();
+    return (first_low - second_high).cwiseMax(second_low - first_high).cwiseMax(0.0).squaredNorm();
 }
 
 Candidates::Candidates(const CollisionMesh& mesh, double distance, bool self)
@@ -45,10 +47,13 @@ Candidates::Candidates(const CollisionMesh& mesh, double distance, bool self)
             box.include(mesh.rest.col(v) + mesh.part[static_cast<std::size_t>(v)] * shift * Vec3::UnitX());
         return box;
     };
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        vertex_boxes_[v] = shifted_box(std::span(&mesh.vertices[v], 1));
     for (std::size_t e = 0; e < mesh.edges.size(); ++e)
         edge_boxes_[e] = shifted_box(mesh.edges[e]);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
         face_boxes_[f] = shifted_box(mesh.faces[f]);
+    vertex_tree_ = BoxTree(vertex_boxes_);
     edge_tree_ = BoxTree(edge_boxes_);
     face_tree_ = BoxTree(face_boxes_);
 }
@@ -96,6 +101,7 @@ std::array<int, 4> Candidates::vertices(StencilKind kind, int i) const {
 }
 
 void Candidates::set_regions(const Positions& x, const Positions* d, double share) {
+    found_at_ = x;
     regions_.resize(static_cast<std::size_t>(x.cols()));
     parallel_for(static_cast<int>(mesh_.vertices.size()), 512, [&](int i) {
         const int v = mesh_.vertices[static_cast<std::size_t>(i)];
@@ -115,6 +121,7 @@ void Candidates::set_regions(const Positions& x, const Positions* d, double shar
         const auto f = static_cast<std::size_t>(i);
         face_boxes_[f] = box_of(regions_, mesh_.faces[f]);
     });
+    vertex_tree_.refit(vertex_boxes_);
     edge_tree_.refit(edge_boxes_);
     face_tree_.refit(face_boxes_);
 }
@@ -128,7 +135,7 @@ bool Candidates::may_meet(int vertex, int other) const {
 bool Candidates::find_pairs(std::size_t most) {
     const bool complete =
         vertex_faces_.found.find_between(
-            vertex_boxes_, face_tree_,
+            vertex_tree_, face_tree_,
             [&](int i, int f) {
                 const int v = mesh_.vertices[static_cast<std::size_t>(i)];
                 const Face& face = mesh_.faces[static_cast<std::size_t>(f)];
@@ -144,20 +151,49 @@ bool Candidates::find_pairs(std::size_t most) {
             most);
     if (!complete)
         return false;
-    find_rest_distances(StencilKind::point_triangle, vertex_faces_);
-    find_rest_distances(StencilKind::edge_edge, edge_edges_);
+    find_distances(StencilKind::point_triangle, vertex_faces_);
+    find_distances(StencilKind::edge_edge, edge_edges_);
     return true;
 }
 
-void Candidates::find_rest_distances(StencilKind kind, Pairs& pairs) const {
-    const double far = 2 * distance_;
+void Candidates::find_distances(StencilKind kind, Pairs& pairs) const {
+    // Further apart than `beyond`, the boxes' distance is as good: drift within the regions uses up no more than that.
+    const double far = 2 * distance_, beyond = 2 * distance_ + 4 * slack_;
+    const auto distance = [&](const Positions& x, const std::array<int, 4>& corners, double cut) {
+        const Stencil stencil = gather(x, corners);
+        const double box_squared = squared_sweep_distance(kind, stencil, stencil);
+        return std::sqrt(box_squared >= cut * cut ? box_squared : squared_distance(kind, stencil));
+    };
     pairs.rest_distances.resize(pairs.found.pairs().size());
+    pairs.found_distances.resize(pairs.found.pairs().size());
     parallel_for(size(kind), 512, [&](int i) {
-        const Stencil rest = gather(mesh_.rest, vertices(kind, i));
-        double distance = far;
-        if (squared_box_distance(kind, rest) < far * far)
-            distance = std::min(far, std::sqrt(separate(kind, rest).squared_distance));
-        pairs.rest_distances[static_cast<std::size_t>(i)] = distance;
+        const auto p = static_cast<std::size_t>(i);
+        const auto corners = vertices(kind, i);
+        pairs.found_distances[p] = distance(found_at_, corners, beyond);
+        pairs.rest_distances[p] = std::min(far, distance(mesh_.rest, corners, far));
+    });
+}
+
+void Candidates::find_drift(const Positions& x, const Positions& y, Drift& drift) const {
+    drift.of_vertex.assign(static_cast<std::size_t>(x.cols()), 0);
+    drift.of_edge.resize(mesh_.edges.size());
+    drift.of_face.resize(mesh_.faces.size());
+    auto& moved = drift.of_vertex;
+    const auto moved_by = [&](int v) { return moved[static_cast<std::size_t>(v)]; };
+    parallel_for(static_cast<int>(mesh_.vertices.size()), 1024, [&](int i) {
+        const int v = mesh_.vertices[static_cast<std::size_t>(i)];
+        const double squared =
+            std::max((x.col(v) - found_at_.col(v)).squaredNorm(), (y.col(v) - found_at_.col(v)).squaredNorm());
+        const double rounding = 8 * std::numeric_limits<double>::epsilon() * found_at_.col(v).lpNorm<Eigen::Infinity>();
+        moved[static_cast<std::size_t>(v)] = std::sqrt(squared) * (1 + 1e-14) + rounding;
+    });
+    parallel_for(static_cast<int>(mesh_.edges.size()), 1024, [&](int i) {
+        const auto& [a, b] = mesh_.edges[static_cast<std::size_t>(i)];
+        drift.of_edge[static_cast<std::size_t>(i)] = std::max(moved_by(a), moved_by(b));
+    });
+    parallel_for(static_cast<int>(mesh_.faces.size()), 1024, [&](int i) {
+        const auto& [a, b, c] = mesh_.faces[static_cast<std::size_t>(i)];
+        drift.of_face[static_cast<std::size_t>(i)] = std::max({moved_by(a), moved_by(b), moved_by(c)});
     });
 }
 

@@ -33,16 +33,34 @@ public:
     /// Vertices of candidate i in the order of a stencil.
     std::array<int, 4> vertices(StencilKind kind, int i) const;
     /// Vertex and face, or edge and edge.
-    const std::array<int, 2>& primitives(StencilKind kind, int i) const {
-        return of(kind).found.pairs()[static_cast<std::size_t>(i)];
+    std::array<int, 2> primitives(StencilKind kind, int i) const {
+        auto [first, second] = of(kind).found.pairs()[static_cast<std::size_t>(i)];
+        if (kind == StencilKind::point_triangle)
+            first = mesh_.vertices[static_cast<std::size_t>(first)];
+        return {first, second};
     }
     /// The pair's distance at rest, m, cut off at twice the contact distance.
     double rest_distance(StencilKind kind, int i) const { return of(kind).rest_distances[static_cast<std::size_t>(i)]; }
+
+    /// How far primitives may be, anywhere on the straight way from x to y, from where they were when pairs were found.
+    struct Drift {
+        std::vector<double> of_vertex, of_edge, of_face; ///< m
+    };
+    void find_drift(const Positions& x, const Positions& y, Drift& drift) const;
+    /// A lower bound, m, on the distance of candidate i at any place the drift allows.
+    double least_distance(StencilKind kind, int i, const Drift& drift) const {
+        const auto [first, second] = primitives(kind, i);
+        const bool edges = kind == StencilKind::edge_edge;
+        const double moved = (edges ? drift.of_edge : drift.of_vertex)[static_cast<std::size_t>(first)] +
+                             (edges ? drift.of_edge : drift.of_face)[static_cast<std::size_t>(second)];
+        return of(kind).found_distances[static_cast<std::size_t>(i)] - moved;
+    }
 
 private:
     struct Pairs {
         OverlapPairs found;
         std::vector<double> rest_distances;
+        std::vector<double> found_distances; ///< at found_at_, m
     };
 
     const Pairs& of(StencilKind kind) const {
@@ -50,16 +68,17 @@ private:
     }
     void set_regions(const Positions& x, const Positions* d, double share);
     bool find_pairs(std::size_t most);
-    void find_rest_distances(StencilKind kind, Pairs& pairs) const;
+    void find_distances(StencilKind kind, Pairs& pairs) const;
     bool may_meet(int vertex, int other) const;
 
     const CollisionMesh& mesh_;
     double distance_;
     bool self_;
     double slack_;
-    std::vector<Box> regions_; ///< per vertex; empty before the first search
-    std::vector<Box> vertex_boxes_, edge_boxes_, face_boxes_;
-    BoxTree edge_tree_, face_tree_;
+    std::vector<Box> regions_;                                ///< per vertex; empty before the first search
+    std::vector<Box> vertex_boxes_, edge_boxes_, face_boxes_; ///< of mesh.vertices, edges and faces
+    BoxTree vertex_tree_, edge_tree_, face_tree_;
+    Positions found_at_{3, 0};
     Pairs vertex_faces_, edge_edges_;
 };
 
@@ -71,7 +90,8 @@ inline Stencil gather(const Positions& x, const std::array<int, 4>& vertices) {
     return stencil;
 }
 
-/// A lower bound on the squared distance of the two primitives of a stencil: that of their boxes.
-double squared_box_distance(StencilKind kind, const Stencil& x);
+/// The squared distance of the boxes that two primitives sweep between two stencils: a lower bound on their distance
+/// at any moment.
+double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stencil& to);
 
 } // namespace plisse

@@ -20,17 +20,6 @@ void lower(std::atomic<double>& least, double value) {
     }
 }
 
-/// A lower bound on the squared distance of the boxes that two primitives sweep between two stencils.
-double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stencil& to) {
-    const Stencil low = from.cwiseMin(to), high = from.cwiseMax(to);
-    const int first = kind == StencilKind::point_triangle ? 1 : 2;
-    const Vec3 first_low = low.leftCols(first).rowwise().minCoeff();
-    const Vec3 first_high = high.leftCols(first).rowwise().maxCoeff();
-    const Vec3 second_low = low.rightCols(4 - first).rowwise().minCoeff();
-    const Vec3 second_high = high.rightCols(4 - first).rowwise().maxCoeff();
-    return (first_low - second_high).cwiseMax(second_low - first_high).cwiseMax(0.0).squaredNorm();
-}
-
 bool same(const Positions& a, const Positions& b) {
     return a.cols() == b.cols() && a == b;
 }
@@ -47,8 +36,9 @@ struct Contact::State {
     /// Largest t in [0, length] up to which all candidates of one kind stay far enough apart on the way from
     /// sweep_start along d, whose boxes reach to sweep_end.
     double safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const;
-    double safe_length_of(StencilKind kind, const std::array<int, 4>& vertices, const Positions& x, const Positions& d,
-                          double length) const;
+    double safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d, double length) const;
+    /// Adds block by block what pairs[begin ...] contribute, the results being in `hessians`.
+    void scatter_hessians(std::size_t begin, std::size_t count, NewtonSystem& system) const;
 
     CollisionMesh mesh;
     ContactOptions options;
@@ -56,6 +46,7 @@ struct Contact::State {
     ActiveSet active;
     Positions active_at{3, 0}; ///< where the active set was found
     Positions sweep_start, sweep_end;
+    Candidates::Drift sweep_drift;
     std::vector<Vec12> gradients;
     std::vector<Mat12> hessians;
     std::vector<Edge> coupled_pairs;
@@ -75,8 +66,11 @@ void Contact::State::evaluate(const Positions& x) {
     active_at = x;
 }
 
-double Contact::State::safe_length_of(StencilKind kind, const std::array<int, 4>& vertices, const Positions& x,
-                                      const Positions& d, double length) const {
+double Contact::State::safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d,
+                                      double length) const {
+    if (candidates.least_distance(kind, candidate, sweep_drift) >= options.distance)
+        return length;
+    const auto vertices = candidates.vertices(kind, candidate);
     const Stencil start = gather(sweep_start, vertices);
     const double sweep_squared = squared_sweep_distance(kind, start, gather(sweep_end, vertices));
     if (sweep_squared >= options.distance * options.distance)
@@ -85,8 +79,7 @@ double Contact::State::safe_length_of(StencilKind kind, const std::array<int, 4>
     // Any two corners bound the distance at x from above.
     if (sweep_squared >= options.ccd_ratio * options.ccd_ratio * (at_x.col(0) - at_x.col(3)).squaredNorm())
         return length;
-    const double kept =
-        std::min(options.ccd_ratio * std::sqrt(separate(kind, at_x).squared_distance), options.distance);
+    const double kept = std::min(options.ccd_ratio * std::sqrt(squared_distance(kind, at_x)), options.distance);
     return safe_step(kind, start, gather(d, vertices), kept, length);
 }
 
@@ -94,7 +87,7 @@ double Contact::State::safe_length(StencilKind kind, const Positions& x, const P
     std::atomic<double> least{length};
     parallel_for(candidates.size(kind), 256, [&](int i) {
         const double end = least.load(std::memory_order_relaxed);
-        lower(least, safe_length_of(kind, candidates.vertices(kind, i), x, d, end));
+        lower(least, safe_length_of(kind, i, x, d, end));
     });
     return least.load();
 }
@@ -142,30 +135,48 @@ const std::vector<Edge>& Contact::coupled_pairs(const Positions& x) {
     state_->evaluate(x);
     auto& coupled = state_->coupled_pairs;
     coupled.clear();
-    for (const ActivePair& pair : state_->active.pairs())
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t j = i + 1; j < 4; ++j)
-                coupled.push_back(
-                    {std::min(pair.vertices[i], pair.vertices[j]), std::max(pair.vertices[i], pair.vertices[j])});
-    std::sort(coupled.begin(), coupled.end());
-    coupled.erase(std::unique(coupled.begin(), coupled.end()), coupled.end());
+    for (const ActivePair& pair : state_->active.pairs()) {
+        const std::size_t first = pair.parameters.mollifier_threshold > 0 ? 2 : 1; // corners of the first primitive
+        for (std::size_t i = 0; i < first; ++i)
+            for (std::size_t j = first; j < 4; ++j)
+                coupled.push_back({pair.vertices[i], pair.vertices[j]});
+    }
     return coupled;
 }
 
-void Contact::add_hessian(const Positions& x, NewtonSystem& system) {
+void Contact::State::scatter_hessians(std::size_t begin, std::size_t count, NewtonSystem& system) const {
+    for (std::size_t k = 0; k < count; ++k) {
+        const ActivePair& pair = active.pairs()[begin + k];
+        for (int j = 0; j < 4; ++j)
+            for (int i = 0; i < 4; ++i) {
+                const int row = pair.vertices[static_cast<std::size_t>(i)];
+                const int column = pair.vertices[static_cast<std::size_t>(j)];
+                const auto block = hessians[k].block<3, 3>(3 * i, 3 * j);
+                if (row >= column && (block.array() != 0).any())
+                    system.add_block(row, column, block);
+            }
+    }
+}
+
+void Contact::add_hessian(const Positions& x, NewtonSystem& system, bool project) {
     const PhaseScope scope(*state_->times, Phase::contact);
     state_->evaluate(x);
     const auto& pairs = state_->active.pairs();
     auto& hessians = state_->hessians;
-    hessians.resize(pairs.size());
-    const auto hessian_of =
-        state_->options.hessian == HessianKind::projected ? pair_projected_hessian : pair_gauss_newton_hessian;
-    parallel_for(static_cast<int>(pairs.size()), 64, [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        hessians[p] = hessian_of(pairs[p].parameters, pairs[p].separation, gather(x, pairs[p].vertices));
-    });
-    for (std::size_t p = 0; p < pairs.size(); ++p)
-        system.add(pairs[p].vertices, hessians[p]);
+    const auto projected_hessian_of = state_->options.hessian == HessianKind::projected ? pair_projected_hessian
+                                                                                        : pair_gauss_newton_hessian;
+    const auto hessian_of = project ? projected_hessian_of : pair_hessian;
+    constexpr std::size_t batch_size = 1024; // blocks of a batch stay in the cache until they are scattered
+    for (std::size_t begin = 0; begin < pairs.size(); begin += batch_size) {
+        const std::size_t count = std::min(batch_size, pairs.size() - begin);
+        hessians.resize(std::max(hessians.size(), count));
+        parallel_for(static_cast<int>(count), 32, [&](int i) {
+            const ActivePair& pair = pairs[begin + static_cast<std::size_t>(i)];
+            hessians[static_cast<std::size_t>(i)] =
+                hessian_of(pair.parameters, pair.separation, gather(x, pair.vertices));
+        });
+        state_->scatter_hessians(begin, count, system);
+    }
 }
 
 double Contact::max_step(const Positions& x, const Positions& d) {
@@ -183,6 +194,7 @@ double Contact::max_step(const Positions& x, const Positions& d) {
             until = share < 1 - done ? done + share : 1;
             s.sweep_end = x + until * d;
         }
+        s.candidates.find_drift(s.sweep_start, s.sweep_end, s.sweep_drift);
         double length = s.safe_length(StencilKind::point_triangle, x, d, until - done);
         length = s.safe_length(StencilKind::edge_edge, x, d, length);
         if (length < until - done)

@@ -8,8 +8,7 @@
 
 namespace plisse {
 
-/// Which positive semi-definite matrix stands for a pair's Hessian: the nearest one, or the rank-one Gauss-Newton part
-/// across the closest points only, cheaper.
+/// Which positive semi-definite matrix stands for a pair's Hessian (see pair_energy.h).
 enum class HessianKind { projected, gauss_newton };
 
 struct ContactOptions {
@@ -35,10 +34,11 @@ public:
     double value(const Positions& x);
     /// Adds dB/dx, N.
     void add_gradient(const Positions& x, Positions& gradient);
-    /// Vertex pairs that the Hessian at x couples; pass them to NewtonSystem::begin.
+    /// Vertex pairs that the Hessian at x couples, besides the mesh's own edges; pass them to NewtonSystem::begin. A
+    /// pair may come up more than once.
     const std::vector<Edge>& coupled_pairs(const Positions& x);
-    /// Adds the Hessian at x, projected to positive semi-definite pair by pair.
-    void add_hessian(const Positions& x, NewtonSystem& system);
+    /// Adds the Hessian at x, made positive semi-definite pair by pair when `project` is set.
+    void add_hessian(const Positions& x, NewtonSystem& system, bool project = true);
 
     /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least the lesser
     /// of options.ccd_ratio of its distance at x and options.distance, at every moment of the motion. Never an

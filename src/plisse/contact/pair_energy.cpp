@@ -32,59 +32,42 @@ Mat12 rank_one(double factor, const Vec4& w, const Vec3& n) {
     return factor * direction * direction.transpose();
 }
 
-/// basis * (the positive part of inner) * basis^T.
-template <int Size>
-Mat12 lifted_positive_part(const Eigen::Matrix<double, 12, Size>& basis,
-                           const Eigen::Matrix<double, Size, Size>& inner) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Size, Size>> eigen(inner);
-    Mat12 result = Mat12::Zero();
-    for (int i = Size - 1; i >= 0 && eigen.eigenvalues()[i] > 0; --i) {
-        const Vec12 direction = basis * eigen.eigenvectors().col(i);
-        result.noalias() += (eigen.eigenvalues()[i] * direction) * direction.transpose();
-    }
-    return result;
+/// Turns the two orthonormal tangents in their plane until the slides are at right angles to each other too. Terms that
+/// are projected one by one then depend on the points only, not on the order they come in.
+void make_slides_orthogonal(Separation& s) {
+    const double difference = s.slides.col(0).squaredNorm() - s.slides.col(1).squaredNorm();
+    const double twice_product = 2 * s.slides.col(0).dot(s.slides.col(1));
+    const double length = std::hypot(difference, twice_product);
+    if (length == 0)
+        return;
+    const double cosine = std::sqrt(0.5 * (1 + difference / length));
+    const double sine = std::copysign(std::sqrt(0.5 * std::max(0.0, 1 - difference / length)), twice_product);
+    Mat2 turn;
+    turn << cosine, -sine, sine, cosine;
+    s.slides *= turn;
+    s.tangents *= turn;
 }
 
-/// The positive part of b''(D) dD dD^T + b'(D) d2D for `Freedom` slides. With orthonormal tangents t_k, slides v_k, the
-/// weights w, the unit offset n and distance d, the matrix is
-///   a (w x n)(w x n)^T + c sum_k [d (w x t_k)(v_k x n)^T + transpose + d^2 (v_k x n)(v_k x n)^T],
-///   a = 4 b'' d^2 + 2 b', c = -2 b' >= 0,
-/// and, for less than two slides, -c (w x m)(w x m)^T in the other directions m across n and the tangents, which
-/// project to nothing. With q_i from Gram-Schmidt over w, v_1, v_2 the vectors q_i x n, q_0 x t_k are an orthonormal
-/// basis.
-template <int Freedom>
+/// A bound on the Hessian of the barrier alone, term by term.
 Mat12 projected_barrier(const Separation& separation, const Barrier& b) {
-    constexpr int size = 1 + 2 * Freedom;
-    const Separation s = with_orthonormal_tangents(separation);
-    const double d_squared = s.squared_distance, d = std::sqrt(d_squared), c = -2 * b.first;
+    Separation s = with_orthonormal_tangents(separation);
+    if (s.freedom == 2)
+        make_slides_orthogonal(s);
+    const double d = std::sqrt(s.squared_distance), c = -2 * b.first;
     const Vec3 n = s.offset / d;
-
-    Eigen::Matrix<double, 4, Freedom + 1> q;
-    const double w_length = s.weights.norm();
-    q.col(0) = s.weights / w_length;
-    Eigen::Matrix<double, size, size> inner = Eigen::Matrix<double, size, size>::Zero();
-    inner(0, 0) = (4 * b.second * d_squared + 2 * b.first) * w_length * w_length;
-    for (int k = 0; k < Freedom; ++k) {
-        Eigen::Matrix<double, Freedom + 1, 1> coefficients = Eigen::Matrix<double, Freedom + 1, 1>::Zero();
-        Vec4 rest = s.slides.col(k);
-        for (int i = 0; i <= k; ++i) {
-            coefficients[i] = q.col(i).dot(rest);
-            rest -= coefficients[i] * q.col(i);
-        }
-        coefficients[k + 1] = rest.norm();
-        q.col(k + 1) = rest / coefficients[k + 1];
-        inner.template topLeftCorner<Freedom + 1, Freedom + 1>() +=
-            c * d_squared * coefficients * coefficients.transpose();
-        inner.template block<Freedom + 1, 1>(0, Freedom + 1 + k) = c * d * w_length * coefficients;
-        inner.template block<1, Freedom + 1>(Freedom + 1 + k, 0) = c * d * w_length * coefficients.transpose();
+    Mat12 result = rank_one(curvature_in_distance(b, s.squared_distance), s.weights, n);
+    const double w = s.weights.norm();
+    for (int k = 0; k < s.freedom; ++k) {
+        // In the orthonormal directions v_k x n and w x t_k the term is c [[p^2, p w], [p w, 0]].
+        const double v = s.slides.col(k).norm(), p = d * v;
+        const double eigenvalue = 0.5 * (p * p + p * std::sqrt(p * p + 4 * w * w));
+        const double length_squared = eigenvalue * eigenvalue + p * p * w * w;
+        Vec12 direction; // of the eigenvector (eigenvalue, p w)
+        Eigen::Map<Stencil>(direction.data()) =
+            (eigenvalue / v) * n * s.slides.col(k).transpose() + p * s.tangents.col(k) * s.weights.transpose();
+        result.noalias() += (c * eigenvalue / length_squared * direction) * direction.transpose();
     }
-
-    Eigen::Matrix<double, 12, size> basis;
-    for (int i = 0; i <= Freedom; ++i)
-        Eigen::Map<Stencil>(basis.col(i).data()) = n * q.col(i).transpose();
-    for (int k = 0; k < Freedom; ++k)
-        Eigen::Map<Stencil>(basis.col(Freedom + 1 + k).data()) = s.tangents.col(k) * q.col(0).transpose();
-    return lifted_positive_part<size>(basis, inner);
+    return result;
 }
 
 /// Positive part of a translation-invariant 12x12 matrix, found in nine dimensions.
@@ -94,7 +77,13 @@ Mat12 translation_free_positive_part(const Mat12& hessian) {
     for (int k = 0; k < 3; ++k)
         for (int i = 0; i < 4; ++i)
             basis.block<3, 3>(3 * i, 3 * k) = relative[static_cast<std::size_t>(k)][i] * Mat3::Identity();
-    return lifted_positive_part<9>(basis, basis.transpose() * hessian * basis);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(basis.transpose() * hessian * basis);
+    Mat12 result = Mat12::Zero();
+    for (int i = 8; i >= 0 && eigen.eigenvalues()[i] > 0; --i) {
+        const Vec12 direction = basis * eigen.eigenvectors().col(i);
+        result.noalias() += (eigen.eigenvalues()[i] * direction) * direction.transpose();
+    }
+    return result;
 }
 
 Mat12 mollified_hessian(const Mollifier& m, const Barrier& b, const Separation& separation, const Stencil& x) {
@@ -129,13 +118,9 @@ Mat12 pair_hessian(const PairParameters& parameters, const Separation& separatio
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
     const Mollifier m = mollifier_of(parameters, x);
-    if (m.value < 1)
+    if (m.first > 0)
         return translation_free_positive_part(mollified_hessian(m, b, separation, x));
-    if (separation.freedom == 2)
-        return projected_barrier<2>(separation, b);
-    if (separation.freedom == 1)
-        return projected_barrier<1>(separation, b);
-    return projected_barrier<0>(separation, b);
+    return projected_barrier(separation, b);
 }
 
 Mat12 pair_gauss_newton_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {

@@ -21,9 +21,12 @@ Vec12 pair_gradient(const PairParameters& parameters, const Separation& separati
 /// d2E/dX2, N/m.
 Mat12 pair_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
-/// The positive semi-definite matrix nearest to d2E/dX2. Without the mollifier all of it but negative multiples of
-/// identities lives in 1 + 2 freedom directions (one, three or five), where it is projected; with it, in the nine that
-/// are left when translations are taken off.
+/// A positive semi-definite matrix close to d2E/dX2 and not below it. With orthonormal tangents t_k, slides v_k,
+/// weights w, unit offset n and distance d, the Hessian without mollifier is (x is Kronecker's product)
+///   E''(d) (w x n)(w x n)^T + c sum_k [d (w x t_k)(v_k x n)^T + its transpose + d^2 (v_k x n)(v_k x n)^T]
+///   - c (w x m)(w x m)^T summed over the directions m across n and the tangents,      c = -2 dE/dD >= 0.
+/// Each term is projected by itself: the first is positive, the last negative, and those of the sum are 2x2 matrices.
+/// With the mollifier the nearest semi-definite matrix is found in the nine dimensions across translations.
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
 /// The part of d2E/dX2 that is left when the mollifier and the direction between the closest points stand still:

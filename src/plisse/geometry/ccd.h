@@ -11,6 +11,10 @@ inline Separation separate(StencilKind kind, const Stencil& x) {
     return kind == StencilKind::point_triangle ? separate_point_triangle(x) : separate_edges(x);
 }
 
+inline double squared_distance(StencilKind kind, const Stencil& x) {
+    return kind == StencilKind::point_triangle ? squared_distance_point_triangle(x) : squared_distance_edges(x);
+}
+
 /// A lower bound on the largest t in [0, end] such that two primitives moving from x to x + t * d stay apart by at
 /// least `gap` at every moment; `end` itself when they do so all the way. Tight to `ccd_tolerance` of the distance they
 /// may lose. When they start at `gap` or nearer, the bound is 0 unless nothing moves relative to each other.

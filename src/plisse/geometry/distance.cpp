@@ -76,20 +76,58 @@ Separation separate_border(const Stencil& y, const Border& border, double parame
     return s;
 }
 
-Separation separate_nearest_border(const Stencil& y, std::span<const Border> borders) {
-    const Border* nearest = nullptr;
-    double nearest_parameter = 0, least = std::numeric_limits<double>::infinity();
+/// The border whose closest points are nearest, and where.
+struct NearestBorder {
+    const Border* border = nullptr;
+    double parameter = 0, squared_distance = 0;
+};
+
+NearestBorder find_nearest_border(const Stencil& y, std::span<const Border> borders) {
+    NearestBorder nearest;
     for (const Border& border : borders) {
         const Vec3 p = y.col(border.point), start = y.col(border.start), end = y.col(border.end);
         const double parameter = closest_parameter(p, start, end);
         const double squared = (p - (1 - parameter) * start - parameter * end).squaredNorm();
-        if (!nearest || squared < least) {
-            nearest = &border;
-            nearest_parameter = parameter;
-            least = squared;
-        }
+        if (!nearest.border || squared < nearest.squared_distance)
+            nearest = {&border, parameter, squared};
     }
-    return separate_border(y, *nearest, nearest_parameter);
+    return nearest;
+}
+
+Separation separate_nearest_border(const Stencil& y, std::span<const Border> borders) {
+    const NearestBorder nearest = find_nearest_border(y, borders);
+    return separate_border(y, *nearest.border, nearest.parameter);
+}
+
+/// Where the insides of two primitives face each other, if they do: barycentric coordinates 1 and 2 of the foot in the
+/// triangle, or the parameters of the closest points on two edges. `height_squared` is the squared distance there.
+struct Facing {
+    bool inside = false;
+    double first = 0, second = 0, height_squared = 0;
+};
+
+Facing face_triangle(const Stencil& y) {
+    const Vec3 e1 = y.col(2) - y.col(1), e2 = y.col(3) - y.col(1), to_point = -y.col(1);
+    const Vec3 normal = e1.cross(e2);
+    const double area_squared = normal.squaredNorm();
+    if (!(area_squared > parallel_sine_squared * e1.squaredNorm() * e2.squaredNorm()))
+        return {};
+    const double b1 = to_point.cross(e2).dot(normal) / area_squared;
+    const double b2 = e1.cross(to_point).dot(normal) / area_squared;
+    const double height = to_point.dot(normal);
+    return {b1 > 0 && b2 > 0 && b1 + b2 < 1, b1, b2, height * height / area_squared};
+}
+
+Facing face_edges(const Stencil& y) {
+    const Vec3 u = y.col(1), v = y.col(3) - y.col(2), between = -y.col(2);
+    const Vec3 normal = u.cross(v);
+    const double area_squared = normal.squaredNorm();
+    if (!(area_squared > parallel_sine_squared * u.squaredNorm() * v.squaredNorm()))
+        return {};
+    const double a = v.cross(between).dot(normal) / area_squared;
+    const double b = u.cross(between).dot(normal) / area_squared;
+    const double height = between.dot(normal);
+    return {a > 0 && a < 1 && b > 0 && b < 1, a, b, height * height / area_squared};
 }
 
 } // namespace
@@ -111,46 +149,44 @@ Separation separate_point_edge(const Vec3& p, const Vec3& e0, const Vec3& e1) {
 
 Separation separate_point_triangle(const Stencil& x) {
     const Stencil y = relative(x);
-    const Vec3 e1 = y.col(2) - y.col(1), e2 = y.col(3) - y.col(1), to_point = -y.col(1);
-    const Vec3 normal = e1.cross(e2);
-    const double area_squared = normal.squaredNorm();
-    if (area_squared > parallel_sine_squared * e1.squaredNorm() * e2.squaredNorm()) {
-        const double b1 = to_point.cross(e2).dot(normal) / area_squared;
-        const double b2 = e1.cross(to_point).dot(normal) / area_squared;
-        if (b1 > 0 && b2 > 0 && b1 + b2 < 1) {
-            Separation s;
-            s.weights << 1, -(1 - b1 - b2), -b1, -b2;
-            s.slides.col(0) << 0, 1, -1, 0;
-            s.slides.col(1) << 0, 1, 0, -1;
-            s.freedom = 2;
-            s.corners = 0b1111;
-            complete(s, y);
-            return s;
-        }
-    }
-    return separate_nearest_border(y, triangle_borders);
+    const Facing facing = face_triangle(y);
+    if (!facing.inside)
+        return separate_nearest_border(y, triangle_borders);
+    Separation s;
+    s.weights << 1, -(1 - facing.first - facing.second), -facing.first, -facing.second;
+    s.slides.col(0) << 0, 1, -1, 0;
+    s.slides.col(1) << 0, 1, 0, -1;
+    s.freedom = 2;
+    s.corners = 0b1111;
+    complete(s, y);
+    return s;
 }
 
 Separation separate_edges(const Stencil& x) {
     const Stencil y = relative(x);
-    const Vec3 u = y.col(1), v = y.col(3) - y.col(2), between = -y.col(2);
-    const Vec3 normal = u.cross(v);
-    const double area_squared = normal.squaredNorm();
-    if (area_squared > parallel_sine_squared * u.squaredNorm() * v.squaredNorm()) {
-        const double a = v.cross(between).dot(normal) / area_squared;
-        const double b = u.cross(between).dot(normal) / area_squared;
-        if (a > 0 && a < 1 && b > 0 && b < 1) {
-            Separation s;
-            s.weights << 1 - a, a, -(1 - b), -b;
-            s.slides.col(0) << -1, 1, 0, 0;
-            s.slides.col(1) << 0, 0, 1, -1;
-            s.freedom = 2;
-            s.corners = 0b1111;
-            complete(s, y);
-            return s;
-        }
-    }
-    return separate_nearest_border(y, edge_borders);
+    const Facing facing = face_edges(y);
+    if (!facing.inside)
+        return separate_nearest_border(y, edge_borders);
+    Separation s;
+    s.weights << 1 - facing.first, facing.first, -(1 - facing.second), -facing.second;
+    s.slides.col(0) << -1, 1, 0, 0;
+    s.slides.col(1) << 0, 0, 1, -1;
+    s.freedom = 2;
+    s.corners = 0b1111;
+    complete(s, y);
+    return s;
+}
+
+double squared_distance_point_triangle(const Stencil& x) {
+    const Stencil y = relative(x);
+    const Facing facing = face_triangle(y);
+    return facing.inside ? facing.height_squared : find_nearest_border(y, triangle_borders).squared_distance;
+}
+
+double squared_distance_edges(const Stencil& x) {
+    const Stencil y = relative(x);
+    const Facing facing = face_edges(y);
+    return facing.inside ? facing.height_squared : find_nearest_border(y, edge_borders).squared_distance;
 }
 
 Vec12 squared_distance_gradient(const Separation& separation) {

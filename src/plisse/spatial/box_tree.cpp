@@ -55,7 +55,7 @@ void BoxTree::build(std::span<const Box> boxes, int begin, int end) {
     const std::size_t node = nodes_.size();
     nodes_.emplace_back();
     if (end - begin <= leaf_size) {
-        nodes_[node].first = begin;
+        nodes_[node].leaf = begin / leaf_size;
         node_of_leaf_.push_back(static_cast<int>(node));
     } else {
         Box centers;
@@ -85,10 +85,10 @@ void BoxTree::refit(std::span<const Box> boxes) {
     for (std::size_t n = nodes_.size(); n-- > 0;) {
         Node& node = nodes_[n];
         node.box = FloatBox();
-        if (node.first >= 0)
-            for (int p = node.first; p < std::min(node.first + leaf_size, size()); ++p)
-                node.box.include(boxes_[static_cast<std::size_t>(p)]);
-        else {
+        if (node.leaf >= 0) {
+            for (int p = node.leaf * leaf_size; p < end_of_leaf(node.leaf); ++p)
+                node.box.include(box_at(p));
+        } else {
             const Node& first_child = nodes_[n + 1];
             node.box.include(first_child.box);
             node.box.include(nodes_[static_cast<std::size_t>(first_child.skip)].box);

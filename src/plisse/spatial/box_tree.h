@@ -23,22 +23,33 @@ public:
     void refit(std::span<const Box> boxes);
 
     int size() const { return static_cast<int>(item_at_.size()); }
-    /// The item at a position of the tree's own, spatially coherent order.
-    int item_at(int position) const { return item_at_[static_cast<std::size_t>(position)]; }
 
     /// Calls visit(item) for each item whose box overlaps `box`.
     template <typename Visit>
     void visit_overlaps(const Box& box, const Visit& visit) const {
-        if (!nodes_.empty())
-            visit_from(0, 0, FloatBox(box), visit);
+        const FloatBox query(box);
+        visit_leaves(0, query, [&](int leaf) {
+            for (int p = leaf * leaf_size; p < end_of_leaf(leaf); ++p)
+                if (box_at(p).overlaps(query))
+                    visit(item_at(p));
+        });
     }
 
-    /// Calls visit(item) for each item at a later position whose box overlaps that of the item at `position`: over all
-    /// positions each overlapping pair comes up once.
+    /// Items lie in leaves of a few neighbours each. Queries leaf by leaf visit each pair of overlapping boxes once.
+    int leaf_count() const { return static_cast<int>(node_of_leaf_.size()); }
+
+    /// Calls visit(item, other) for overlapping items of this tree, the first of them in `leaf` and the other behind
+    /// it.
     template <typename Visit>
-    void visit_later_overlaps(int position, const Visit& visit) const {
-        visit_from(static_cast<std::size_t>(node_of_leaf_[static_cast<std::size_t>(position / leaf_size)]),
-                   position + 1, boxes_[static_cast<std::size_t>(position)], visit);
+    void visit_pairs_from(int leaf, const Visit& visit) const {
+        const int start = node_of_leaf_[static_cast<std::size_t>(leaf)];
+        visit_leaves(start, leaf_box(leaf), [&](int other) { visit_leaf_pairs(leaf, *this, other, visit); });
+    }
+
+    /// Calls visit(item, other) for overlapping items, the first in `leaf` of this tree and the other in another tree.
+    template <typename Visit>
+    void visit_pairs_from(int leaf, const BoxTree& tree, const Visit& visit) const {
+        tree.visit_leaves(0, leaf_box(leaf), [&](int other) { visit_leaf_pairs(leaf, tree, other, visit); });
     }
 
 private:
@@ -62,24 +73,39 @@ private:
     struct Node {
         FloatBox box;
         int skip = 0;
-        int first = -1; ///< position of the leaf's first item; -1 for an inner node
+        int leaf = -1; ///< -1 for an inner node
     };
 
+    /// Calls visit(leaf) for the leaves from `node` on, in order, whose boxes overlap `box`.
     template <typename Visit>
-    void visit_from(std::size_t node, int position, const FloatBox& box, const Visit& visit) const {
-        const std::size_t end = nodes_.size();
+    void visit_leaves(int node, const FloatBox& box, const Visit& visit) const {
+        const int end = static_cast<int>(nodes_.size());
         while (node < end) {
-            const Node& n = nodes_[node];
+            const Node& n = nodes_[static_cast<std::size_t>(node)];
             if (!n.box.overlaps(box)) {
-                node = static_cast<std::size_t>(n.skip);
+                node = n.skip;
                 continue;
             }
-            if (n.first >= 0)
-                for (int p = std::max(n.first, position); p < std::min(n.first + leaf_size, size()); ++p)
-                    if (boxes_[static_cast<std::size_t>(p)].overlaps(box))
-                        visit(item_at_[static_cast<std::size_t>(p)]);
+            if (n.leaf >= 0)
+                visit(n.leaf);
             ++node;
         }
+    }
+
+    template <typename Visit>
+    void visit_leaf_pairs(int leaf, const BoxTree& tree, int other, const Visit& visit) const {
+        const bool same = &tree == this && leaf == other;
+        for (int p = leaf * leaf_size; p < end_of_leaf(leaf); ++p)
+            for (int q = same ? p + 1 : other * leaf_size; q < tree.end_of_leaf(other); ++q)
+                if (box_at(p).overlaps(tree.box_at(q)))
+                    visit(item_at(p), tree.item_at(q));
+    }
+
+    int item_at(int position) const { return item_at_[static_cast<std::size_t>(position)]; }
+    const FloatBox& box_at(int position) const { return boxes_[static_cast<std::size_t>(position)]; }
+    int end_of_leaf(int leaf) const { return std::min((leaf + 1) * leaf_size, size()); }
+    const FloatBox& leaf_box(int leaf) const {
+        return nodes_[static_cast<std::size_t>(node_of_leaf_[static_cast<std::size_t>(leaf)])].box;
     }
 
     void build(std::span<const Box> boxes, int begin, int end);
@@ -100,49 +126,46 @@ public:
     /// returns false. accept is called from several threads.
     template <typename Accept>
     bool find_within(const BoxTree& tree, const Accept& accept, std::size_t most) {
-        return find(tree.size(), most, [&](int position, std::vector<Pair>& found) {
-            const int i = tree.item_at(position);
-            tree.visit_later_overlaps(position, [&](int j) {
-                if (accept(i, j))
-                    found.push_back({i, j});
-            });
-        });
+        return find(
+            tree.leaf_count(), most, [&](int leaf, const auto& visit) { tree.visit_pairs_from(leaf, visit); }, accept);
     }
 
-    /// Pairs {i, j}: box i of `boxes` overlaps item j of the tree. Otherwise as find_within.
+    /// Pairs {i, j} of an item of `tree` and one of `other`. Otherwise as find_within.
     template <typename Accept>
-    bool find_between(std::span<const Box> boxes, const BoxTree& tree, const Accept& accept, std::size_t most) {
-        return find(static_cast<int>(boxes.size()), most, [&](int i, std::vector<Pair>& found) {
-            tree.visit_overlaps(boxes[static_cast<std::size_t>(i)], [&](int j) {
-                if (accept(i, j))
-                    found.push_back({i, j});
-            });
-        });
+    bool find_between(const BoxTree& tree, const BoxTree& other, const Accept& accept, std::size_t most) {
+        return find(
+            tree.leaf_count(), most, [&](int leaf, const auto& visit) { tree.visit_pairs_from(leaf, other, visit); },
+            accept);
     }
 
     const std::vector<Pair>& pairs() const { return pairs_; }
 
 private:
-    template <typename Query>
-    bool find(int count, std::size_t most, const Query& query) {
-        constexpr int chunk_size = 256;
-        chunks_.resize(std::max(chunks_.size(), static_cast<std::size_t>(chunk_count(count, chunk_size))));
-        for (auto& chunk : chunks_)
-            chunk.clear();
+    template <typename Query, typename Accept>
+    bool find(int leaf_count, std::size_t most, const Query& query, const Accept& accept) {
+        constexpr int chunk_size = 64;
+        const int chunks = chunk_count(leaf_count, chunk_size);
+        chunks_.resize(std::max(chunks_.size(), static_cast<std::size_t>(chunks)));
         std::atomic<std::size_t> total{0};
-        parallel_chunks(count, chunk_size, [&](int c, int begin, int end) {
+        parallel_chunks(leaf_count, chunk_size, [&](int c, int begin, int end) {
             auto& chunk = chunks_[static_cast<std::size_t>(c)];
-            for (int i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) {
+            chunk.clear();
+            for (int leaf = begin; leaf < end && total.load(std::memory_order_relaxed) <= most; ++leaf) {
                 const std::size_t before = chunk.size();
-                query(i, chunk);
+                query(leaf, [&](int i, int j) {
+                    if (accept(i, j))
+                        chunk.push_back({i, j});
+                });
                 total.fetch_add(chunk.size() - before, std::memory_order_relaxed);
             }
         });
         pairs_.clear();
         if (total.load() > most)
             return false;
-        for (const auto& chunk : chunks_)
-            pairs_.insert(pairs_.end(), chunk.begin(), chunk.end());
+        pairs_.reserve(total.load());
+        for (int c = 0; c < chunks; ++c)
+            pairs_.insert(pairs_.end(), chunks_[static_cast<std::size_t>(c)].begin(),
+                          chunks_[static_cast<std::size_t>(c)].end());
         return true;
     }
 

@@ -1,0 +1,136 @@
+#include <plisse/contact/pair_energy.h>
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+#include <plisse/contact/barrier.h>
+#include <plisse/geometry/ccd.h>
+#include <plisse/geometry/mollifier.h>
+
+#include "geometry/stencils.h"
+
+namespace plisse {
+namespace {
+
+/// A stencil, what it weighs, and which features it meets in.
+struct Case {
+    StencilKind kind;
+    Stencil x;
+    PairParameters parameters;
+    Separation separation() const { return separate(kind, x); }
+};
+
+/// Random pairs well inside their activation distance and their feature; every second pair of edges is nearly parallel.
+std::vector<Case> random_cases(int count) {
+    Random random(3);
+    std::vector<Case> cases;
+    while (static_cast<int>(cases.size()) < count) {
+        Case c;
+        c.kind = random.below(2) ? StencilKind::point_triangle : StencilKind::edge_edge;
+        c.x = random_stencil(random);
+        const bool parallel = c.kind == StencilKind::edge_edge && random.below(2);
+        if (parallel)
+            c.x.col(3) =
+                c.x.col(2) + random.uniform(0.5, 1.5) * (c.x.col(1) - c.x.col(0)) + random_vector(random, 0.25);
+        const Separation s = c.separation();
+        const double activation = std::sqrt(s.squared_distance) * random.uniform(1.05, 30);
+        c.parameters = {random.uniform(0.5, 2), activation * activation, 0};
+        if (parallel)
+            c.parameters.mollifier_threshold = cross_squared(c.x) * random.uniform(1.2, 5);
+        bool clear = s.squared_distance > 0.005;
+        for (int i = 0; i < 4; ++i)
+            clear = clear && (s.weights[i] == 0 || std::abs(s.weights[i]) > 0.05);
+        if (s.freedom == 2)
+            clear = clear && s.tangents.col(0).cross(s.tangents.col(1)).norm() >
+                                 0.1 * s.tangents.col(0).norm() * s.tangents.col(1).norm();
+        if (clear)
+            cases.push_back(c);
+    }
+    return cases;
+}
+
+Mat12 positive_part(const Mat12& matrix) {
+    const Eigen::SelfAdjointEigenSolver<Mat12> eigen(matrix);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+TEST(Barrier, ValueAndDerivatives) {
+    EXPECT_EQ(barrier(1).value, 0);
+    EXPECT_EQ(barrier(2).first, 0);
+    EXPECT_NEAR(barrier(0.25).value, -0.5625 * std::log(0.25), 1e-15);
+    EXPECT_TRUE(std::isinf(barrier(0).value));
+    for (double x = 0.01; x < 1; x += 0.03) {
+        constexpr double h = 1e-6;
+        EXPECT_NEAR(barrier(x).first, (barrier(x + h).value - barrier(x - h).value) / (2 * h), 1e-7 * (1 + 1 / x));
+        EXPECT_NEAR(barrier(x).second, (barrier(x + h).first - barrier(x - h).first) / (2 * h), 1e-6 / (x * x));
+    }
+}
+
+TEST(PairEnergy, DerivativesAgreeWithDifferences) {
+    std::map<std::array<int, 3>, int> seen;
+    for (const Case& c : random_cases(1500)) {
+        const double step = 2e-6 * std::sqrt(c.separation().squared_distance);
+        const auto energy = [&](const Stencil& y) { return pair_energy(c.parameters, separate(c.kind, y), y); };
+        const auto gradient = [&](const Stencil& y) { return pair_gradient(c.parameters, separate(c.kind, y), y); };
+        const Vec12 expected_gradient = difference_gradient(energy, c.x, step);
+        const Mat12 expected_hessian = difference_hessian(gradient, c.x, step);
+        EXPECT_LT((gradient(c.x) - expected_gradient).norm(), 1e-7 * expected_gradient.norm());
+        EXPECT_LT((pair_hessian(c.parameters, c.separation(), c.x) - expected_hessian).norm(),
+                  1e-6 * expected_hessian.norm());
+        ++seen[{static_cast<int>(c.kind), c.separation().freedom, c.parameters.mollifier_threshold > 0}];
+    }
+    EXPECT_EQ(seen.size(), 9U); // each freedom for point-triangle, edge-edge and mollified edge-edge
+}
+
+double least_eigenvalue(const Mat12& matrix) {
+    return Eigen::SelfAdjointEigenSolver<Mat12>(matrix).eigenvalues()[0];
+}
+
+TEST(PairEnergy, ProjectionIsSemiDefiniteAndNotBelowTheHessian) {
+    for (const Case& c : random_cases(300)) {
+        const Mat12 hessian = pair_hessian(c.parameters, c.separation(), c.x);
+        const Mat12 projected = pair_projected_hessian(c.parameters, c.separation(), c.x);
+        const double round_off = 1e-12 * hessian.norm();
+        EXPECT_GE(least_eigenvalue(projected), -round_off);
+        EXPECT_GE(least_eigenvalue(projected - hessian), -round_off);
+        const Mat12 nearest = positive_part(hessian);
+        if (c.parameters.mollifier_threshold > 0 || c.separation().freedom == 0) {
+            EXPECT_LT((projected - nearest).norm(), 10 * round_off);
+        }
+    }
+}
+
+TEST(PairEnergy, ProjectionIsNearestForNearPairsFacingEachOtherInTheMiddle) {
+    for (const StencilKind kind : {StencilKind::point_triangle, StencilKind::edge_edge})
+        for (const double d : {0.3, 0.1, 0.01}) {
+            const Stencil x = kind == StencilKind::point_triangle
+                                  ? stencil({0, d, 0}, {-1, 0, 1}, {1, 0, 1}, {0, 0, -2})
+                                  : stencil({-1, d, 0}, {1, d, 0}, {0, 0, -1}, {0, 0, 1});
+            const PairParameters p = {1, 0.16, 0};
+            const Mat12 nearest = positive_part(pair_hessian(p, separate(kind, x), x));
+            EXPECT_LT((pair_projected_hessian(p, separate(kind, x), x) - nearest).norm(), 1e-12 * nearest.norm());
+        }
+}
+
+TEST(PairEnergy, GaussNewtonPartIsTheSecondDerivativeAcross) {
+    for (const Case& c : random_cases(100)) {
+        const Separation s = c.separation();
+        const double d = std::sqrt(s.squared_distance),
+                     m = c.parameters.mollifier_threshold > 0
+                             ? mollify(cross_squared(c.x), c.parameters.mollifier_threshold).value
+                             : 1;
+        const auto slope = [&](double at) {
+            return 2 * at / c.parameters.activation_squared * barrier(at * at / c.parameters.activation_squared).first;
+        };
+        const double second = (slope(d * 1.00001) - slope(d * 0.99999)) / (2e-5 * d);
+        const Vec12 direction = squared_distance_gradient(s) / (2 * d);
+        const Mat12 expected = m * c.parameters.scale * second * direction * direction.transpose();
+        EXPECT_LT((pair_gauss_newton_hessian(c.parameters, s, c.x) - expected).norm(), 1e-6 * expected.norm());
+    }
+}
+
+} // namespace
+} // namespace plisse
