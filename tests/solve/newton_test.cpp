@@ -48,7 +48,7 @@ public:
             gradient.segment<3>(3 * v + 3) += pull;
         }
     }
-    void assemble(const VecX& x, NewtonSystem& system) override {
+    void assemble(const VecX& x, NewtonSystem& system, bool project) override {
         system.begin({});
         for (int v = 0; v + 1 < n_; ++v) {
             const Vec3 edge = x.segment<3>(3 * v + 3) - x.segment<3>(3 * v);

@@ -104,13 +104,13 @@ public:
         contact_->add_gradient(points, sum);
         gradient = as_vector(sum);
     }
-    void assemble(const VecX& x, NewtonSystem& system) override {
+    void assemble(const VecX& x, NewtonSystem& system, bool project) override {
         const Positions points = as_positions(x);
         system.begin(contact_->coupled_pairs(points));
         for (int v = 0; v < points.cols(); ++v)
             system.add_block(v, v, inertia_ * Mat3::Identity());
-        assembly_.add_hessian(points, system);
-        contact_->add_hessian(points, system);
+        assembly_.add_hessian(points, system, project);
+        contact_->add_hessian(points, system, project);
     }
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }

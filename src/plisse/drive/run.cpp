@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <plisse/base/error.h>

@@ -38,7 +38,7 @@ std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& re
                                                                                       material.thickness));
         materials.flat.push_back(body.flat_rest_angles);
     }
-    return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials);
+    return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials, HingeHessian::projected);
 }
 
 } // namespace
@@ -107,9 +107,9 @@ void ShellEnergies::add_pressure_gradient(const Positions& y, Positions& gradien
         closed.assembly->add_gradient(y, gradient);
 }
 
-void ShellEnergies::add_hessian(const Positions& y, NewtonSystem& system) const {
+void ShellEnergies::add_hessian(const Positions& y, NewtonSystem& system, bool project) const {
     for (const Term& term : elastic_)
-        term.assembly->add_hessian(y, system);
+        term.assembly->add_hessian(y, system, project);
 }
 
 std::vector<Edge> ShellEnergies::pairs() const {

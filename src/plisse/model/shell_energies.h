@@ -31,8 +31,8 @@ public:
     void add_elastic_gradient(const Positions& y, Positions& gradient) const;
     double pressure_value(const Positions& y) const;
     void add_pressure_gradient(const Positions& y, Positions& gradient) const;
-    /// Projected Hessian of the elastic terms.
-    void add_hessian(const Positions& y, NewtonSystem& system) const;
+    /// Hessian of the elastic terms, projected element by element when `project` is set.
+    void add_hessian(const Positions& y, NewtonSystem& system, bool project) const;
     std::vector<Edge> pairs() const;
 
     /// Forces of pressure on open bodies with the normals of y, frozen (N per vertex).

@@ -243,7 +243,7 @@ NodalForces ShellProblem::forces(const VecX& x) {
     return result;
 }
 
-void ShellProblem::assemble(const VecX& x, NewtonSystem& system) {
+void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
     const Positions& points = level_positions(x);
     system.begin(contact_->coupled_pairs(points));
     {
@@ -251,21 +251,21 @@ void ShellProblem::assemble(const VecX& x, NewtonSystem& system) {
         for (int v = 0; v < points.cols(); ++v)
             system.add_block(v, v, inverse_h_squared_ * mass_[v] * Mat3::Identity());
         if (!carrier_) {
-            elasticity_->add_hessian(points, system);
+            elasticity_->add_hessian(points, system, project);
         } else if (curvature_) {
-            curvature_->add_hessian(points, system);
+            curvature_->add_hessian(points, system, project);
         } else {
             const Positions& y = y_memo_;
             const std::vector<Prolongation::Block> jacobian = carrier_->prolongation.jacobian(points);
             const std::vector<const ElementEnergy*> terms = elasticity_->elastic_terms();
             for (std::size_t k = 0; k < terms.size(); ++k)
                 carrier_->products[k].add(
-                    jacobian, [&](int e, double* hessian) { terms[k]->hessian(e, y, true, hessian); }, system);
+                    jacobian, [&](int e, double* hessian) { terms[k]->hessian(e, y, project, hessian); }, system);
         }
         if (level_bending_)
-            level_bending_->add_hessian(points, system);
+            level_bending_->add_hessian(points, system, project);
     }
-    contact_->add_hessian(points, system);
+    contact_->add_hessian(points, system, project);
 }
 
 double ShellProblem::max_step(const VecX& x, const VecX& d) {

@@ -44,7 +44,7 @@ public:
 
     double value(const VecX& x) override;
     void gradient(const VecX& x, VecX& gradient) override;
-    void assemble(const VecX& x, NewtonSystem& system) override;
+    void assemble(const VecX& x, NewtonSystem& system, bool project) override;
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
     double max_step(const VecX& x, const VecX& d) override;

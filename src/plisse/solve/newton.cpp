@@ -103,9 +103,8 @@ private:
         objective_.gradient(x_, gradient_);
         NewtonSystem& system = objective_.system();
         system.set_prescribed_step(u);
-        objective_.assemble(x_, system);
+        factorize(system);
         PhaseScope scope(context_.times, Phase::linear_solve);
-        factorize_shifted(cholesky_, system);
         const VecX rhs = system.gather(-gradient_ - system.coupling());
         const VecX solution = cholesky_.solve(rhs);
         Direction direction;
@@ -118,6 +117,25 @@ private:
         summary_.step_norm = direction.norm;
         summary_.worst_vertex = direction.worst_vertex;
         return direction;
+    }
+
+    /// Projection keeps H definite but too stiff wherever compression softens the shell, and steps then shrink by a
+    /// constant factor only. So where the last step was taken in full the exact Hessian is tried, and the projected one
+    /// serves when that is indefinite; after a failure it is left alone for a while.
+    void factorize(NewtonSystem& system) {
+        if (full_step_ && penalty_.share == 0 && exact_wait_ == 0) {
+            objective_.assemble(x_, system, false);
+            PhaseScope scope(context_.times, Phase::linear_solve);
+            if (cholesky_.factorize(system)) {
+                exact_failures_ = 0;
+                return;
+            }
+            exact_wait_ = std::min(1 << exact_failures_++, most_exact_wait);
+        }
+        exact_wait_ = std::max(0, exact_wait_ - 1);
+        objective_.assemble(x_, system, true);
+        PhaseScope scope(context_.times, Phase::linear_solve);
+        factorize_shifted(cholesky_, system);
     }
 
     /// Converged, at the cap, or lost.
@@ -163,6 +181,7 @@ private:
             value_ = evaluate(x_);
         }
         penalty_.share *= 1 - alpha;
+        full_step_ = alpha == 1;
         ++summary_.iterations;
         objective_.on_accepted(x_);
     }
@@ -177,6 +196,9 @@ private:
     VecX gradient_, trial_;
     double value_ = 0, trial_value_ = 0;
     int short_steps_ = 0;
+    static constexpr int most_exact_wait = 8;
+    bool full_step_ = false;
+    int exact_wait_ = 0, exact_failures_ = 0;
 };
 
 } // namespace

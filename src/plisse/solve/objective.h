@@ -13,9 +13,9 @@ public:
     /// Value at x; +infinity where x is not feasible.
     virtual double value(const VecX& x) = 0;
     virtual void gradient(const VecX& x, VecX& gradient) = 0;
-    /// Fills the system (between begin and the last add) with a positive semi-definite approximation of the Hessian at
-    /// x.
-    virtual void assemble(const VecX& x, NewtonSystem& system) = 0;
+    /// Fills the system (between begin and the last add) with the Hessian at x, or, when `project` is set, with a
+    /// positive semi-definite approximation of it.
+    virtual void assemble(const VecX& x, NewtonSystem& system, bool project) = 0;
     /// The matrix the solver works on; it says which unknowns are prescribed.
     virtual NewtonSystem& system() = 0;
     /// Targets of the prescribed unknowns; other entries mean nothing.
