@@ -101,9 +101,11 @@ Json mesh_json(const CheckedMesh& mesh) {
 /// Sums over all meshes, then each mesh, then the intersections between meshes.
 Json report_json(const std::vector<CheckedMesh>& meshes, const std::vector<Meeting>& meetings) {
     Json json = {{"usable", all_usable(meshes, meetings)}};
-    for (const CheckedMesh& mesh : meshes)
-        for (const auto& [key, count] : counts_json(mesh.check).items())
+    for (const CheckedMesh& mesh : meshes) {
+        const Json counts = counts_json(mesh.check);
+        for (const auto& [key, count] : counts.items())
             json[key] = json.value(key, 0) + count.get<int>();
+    }
     json["intersecting_face_pairs"] = json["intersecting_face_pairs"].get<std::size_t>() + meetings.size();
     json["meshes"] = Json::array();
     for (const CheckedMesh& mesh : meshes)

@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include <plisse/base/error.h>
+#include <plisse/scene/json_cursor.h>
 
 #include "check_command.h"
 #include "exit_status.h"
@@ -41,11 +44,25 @@ void add_commands(CLI::App& app) {
     plisse::add_later_commands(app);
 }
 
+/// Throws for a first word that is neither an option nor a subcommand; the parser would only miss a subcommand.
+void expect_subcommand(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-')
+        return;
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({}))
+        names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) != names.end())
+        return;
+    throw plisse::InputError("command line", fmt::format("there is no command \"{}\"", argv[1]),
+                             fmt::format("the nearest is `plisse {}`", plisse::nearest_name(argv[1], names)));
+}
+
 ExitCode run_program(int argc, char** argv) {
     CLI::App app("plisse: progressive equilibria of thin shells and cloth in contact", "plisse");
     app.set_version_flag("--version", PLISSE_VERSION);
     app.require_subcommand(1);
     add_commands(app);
+    expect_subcommand(app, argc, argv);
     try {
         app.parse(argc, argv);
         return ExitCode::done;

@@ -102,6 +102,10 @@ Vec3 JsonCursor::vector3(const Limits& limits) const {
     return {item(0).number(limits), item(1).number(limits), item(2).number(limits)};
 }
 
+bool looks_like(const std::string& word, const std::string& name) {
+    return 3 * edit_distance(word, name) <= name.size();
+}
+
 std::string nearest_name(const std::string& word, std::span<const std::string> names) {
     return *std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
         return edit_distance(word, a) < edit_distance(word, b);

@@ -58,6 +58,9 @@ private:
     std::size_t index_ = 0;
 };
 
+/// Whether `word` is `name` with a mistake or two, in proportion to its length.
+bool looks_like(const std::string& word, const std::string& name);
+
 /// The name nearest to `word` by edit distance (Levenshtein); the first of equals. `names` is not empty.
 std::string nearest_name(const std::string& word, std::span<const std::string> names);
 

@@ -89,7 +89,7 @@ public:
     template <typename Value>
     void required(const char* key, Value& value, const char* doc) {
         if (!find(key))
-            at_.fail(fmt::format("the key \"{}\" is missing", key), fmt::format("give it: {}", doc));
+            fail_missing(key, doc);
         field(key, value, doc);
     }
     template <typename Value>
@@ -124,12 +124,20 @@ public:
     void finish() const {
         for (const JsonMember& member : at_.value().members)
             if (!member.key.starts_with("x-") && std::find(known_.begin(), known_.end(), member.key) == known_.end())
-                at_.member(member).fail(
-                    fmt::format("unknown key \"{}\"", member.key),
-                    fmt::format("the nearest known key is \"{}\"", nearest_name(member.key, known_)));
+                fail_unknown(member, nearest_name(member.key, known_));
     }
 
 private:
+    [[noreturn]] void fail_unknown(const JsonMember& member, const std::string& nearest) const {
+        at_.member(member).fail(fmt::format("unknown key \"{}\"", member.key),
+                                fmt::format("the nearest known key is \"{}\"", nearest));
+    }
+    [[noreturn]] void fail_missing(const char* key, const char* doc) const {
+        for (const JsonMember& member : at_.value().members)
+            if (looks_like(member.key, key))
+                fail_unknown(member, key);
+        at_.fail(fmt::format("the key \"{}\" is missing", key), fmt::format("give it: {}", doc));
+    }
     const JsonMember* find(const char* key) {
         if (std::find(known_.begin(), known_.end(), key) == known_.end())
             known_.emplace_back(key);

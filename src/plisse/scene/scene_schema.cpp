@@ -38,6 +38,13 @@ Json any_of(std::initializer_list<Json> schemas) {
 
 const char* const later_note = " (for a later version)";
 
+/// A value to choose an overload by, and to take defaults from.
+template <typename Value>
+const Value& example() {
+    static const Value value = [] { return Value(); }();
+    return value;
+}
+
 /// One overload a type, as in the reader and the writer.
 struct TypeSchema {
     static Json of(const double&, const Limits& limits) {
@@ -88,11 +95,11 @@ struct TypeSchema {
     }
     template <typename Value>
     static Json of(const std::optional<Value>&, const Limits& limits) {
-        return any_of({of(Value{}, limits), {{"type", "null"}}});
+        return any_of({of(example<Value>(), limits), {{"type", "null"}}});
     }
     template <typename Value>
     static Json of(const std::vector<Value>&, const Limits& limits) {
-        return list_schema(of(Value{}, limits));
+        return list_schema(of(example<Value>(), limits));
     }
     template <typename Enum>
     requires std::is_enum_v<Enum>
@@ -135,7 +142,7 @@ public:
     }
     template <typename Value>
     void alternative(const char* key, std::optional<Value>&, const char* doc) {
-        add(key, TypeSchema::of(Value{}, Limits{}), doc);
+        add(key, TypeSchema::of(example<Value>(), Limits{}), doc);
         alternatives_.push_back({{"required", {key}}});
     }
     bool lists_what_is_there() const { return false; }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include <plisse/base/random.h>
 #include <plisse/model/track.h>
 #include <plisse/spatial/box.h>
@@ -86,10 +88,9 @@ void measure_folds(const HierarchyLevel& level, const HierarchyLevel& finest, Le
         if (corners[0]->face < 0 || corners[1]->face != corners[0]->face || corners[2]->face != corners[0]->face)
             continue;
         ++result.mapped_faces;
-        Mat3 weights;
-        for (int k = 0; k < 3; ++k)
-            weights.col(k) = corners[static_cast<std::size_t>(k)]->weights;
-        result.folded_faces += weights.determinant() < 0 ? 1 : 0; // twice the signed area, the coarse face's being 1
+        // Twice the signed area of the image, the coarse face's being 1.
+        const double area = corners[0]->weights.dot(corners[1]->weights.cross(corners[2]->weights));
+        result.folded_faces += area < 0 ? 1 : 0;
     }
 }
 

@@ -1,0 +1,205 @@
+#include <chrono>
+#include <regex>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+#include "scene/temporary_folder.h"
+
+namespace plisse {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+const std::string square_obj = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n";
+
+/// A sheet held along one edge, small enough to end within a second.
+std::string hung_sheet(const std::string& solve) {
+    return R"({"plisse": 1, "name": "hung", "bodies": [{"name": "sheet", "mesh": {"generate": "sheet", "size": [0.2, 0.2],
+        "cells": [8, 8], "pattern": "regular"}}], "handles": [{"name": "edge", "body": "sheet",
+        "select": {"box": [[-0.11, -1, -1], [-0.09, 1, 1]]}}], "hierarchy": {"levels": 2, "coarsest_vertices": 20},
+        "solve": {)" +
+           solve + "}}";
+}
+const std::string few_steps = R"("method": "direct", "duration": 0.3, "settle": false)";
+const std::string many_steps = R"("method": "direct", "time_step": 0.01, "duration": 2, "settle": false)";
+
+class Cli : public testing::Test {
+protected:
+    Outcome run(const std::vector<std::string>& arguments) { return Program(folder_.path(), arguments).wait(); }
+    std::string at(const std::string& file) const { return (folder_.path() / file).string(); }
+    void write(const std::string& file, const std::string& text) { write_text(folder_.path() / file, text); }
+    Json json_of(const std::string& file) { return Json::parse(read_text(folder_.path() / file)); }
+
+    void expect_unusable(const std::vector<std::string>& arguments, const std::string& fragment) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        EXPECT_TRUE(std::regex_match(outcome.err, std::regex("plisse: error: [^\n]+: [^\n]+; [^\n]+\n")))
+            << outcome.err;
+        EXPECT_NE(outcome.err.find(fragment), std::string::npos) << outcome.err;
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
+    expect_unusable({}, "command line: ");
+    expect_unusable({"rum"}, "rum");
+    expect_unusable({"run", "scene.json"}, "plisse run --help");
+    expect_unusable({"run", "scene.json", "-o", "x", "--levle", "1"}, "--levle");
+    expect_unusable({"run", "scene.json", "-o", "x", "--threads", "many"}, "--threads");
+    expect_unusable({"run", "scene.json", "-o", "x", "--progress", "loud"}, "--progress");
+    expect_unusable({"studio"}, "not supported in this version");
+    expect_unusable({"export", "x", "--format", "usd"}, "not supported in this version");
+}
+
+TEST_F(Cli, HelpAndVersionEndInZero) {
+    EXPECT_EQ(run({"--version"}).code, 0);
+    EXPECT_NE(run({"--help"}).out.find("hierarchy"), std::string::npos);
+    for (const char* command :
+         {"run", "check", "hierarchy", "prolong", "render", "report", "schema", "studio", "export"}) {
+        const Outcome outcome = run({command, "--help"});
+        EXPECT_EQ(outcome.code, 0) << command;
+        EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << command;
+    }
+}
+
+TEST_F(Cli, SchemaIsJson) {
+    const Outcome outcome = run({"schema"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(Json::parse(outcome.out)["$schema"], "https://json-schema.org/draft/2020-12/schema");
+}
+
+TEST_F(Cli, CheckTellsUsableUnusableAndUnreadableApart) {
+    write("square.obj", square_obj);
+    write("crossing.obj", "v 0.5 -1 0.2\nv 0.5 1 0.2\nv 0.5 0 0.9\nf 1 2 3\n");
+    write("pinched.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\n");
+    EXPECT_EQ(run({"check", at("square.obj")}).code, 0);
+    EXPECT_EQ(run({"check", at("pinched.obj")}).code, 1);
+    EXPECT_EQ(run({"check", at("square.obj"), at("crossing.obj")}).code, 1);
+    expect_unusable({"check", at("nowhere.obj")}, "nowhere.obj");
+
+    const Json json = Json::parse(run({"check", "--json", at("square.obj"), at("crossing.obj")}).out);
+    EXPECT_FALSE(json["usable"].get<bool>());
+    EXPECT_EQ(json["faces"], 3);
+    EXPECT_EQ(json["boundary_loops"], 2);
+    EXPECT_EQ(json["intersecting_face_pairs"], json["between"].size());
+    EXPECT_GE(json["between"].size(), 1u);
+    EXPECT_TRUE(json["meshes"][0]["usable"].get<bool>());
+    const Json pinched = Json::parse(run({"check", "--json", at("pinched.obj")}).out);
+    EXPECT_EQ(pinched["non_manifold_vertices"], 1);
+    EXPECT_EQ(pinched["meshes"][0]["places"]["non_manifold_vertices"], Json::array({0}));
+}
+
+TEST_F(Cli, ARefusedSceneLeavesNothingBehind) {
+    expect_unusable({"run", at("nowhere.json"), "-o", at("out")}, "nowhere.json");
+    write("bad.json", "{\"plisse\": 1,\n \"bodys\": []}");
+    expect_unusable({"run", at("bad.json"), "-o", at("out")}, "bad.json:2:11: at /bodys: unknown key");
+    write("good.json", hung_sheet(few_steps));
+    expect_unusable({"run", at("good.json"), "-o", at("out"), "--level", "9"}, "--level 9");
+    expect_unusable({"run", at("good.json"), "-o", at("out"), "--method", "rmtr"}, "not supported in this version");
+    EXPECT_FALSE(fs::exists(at("out")));
+}
+
+TEST_F(Cli, RunWritesWhatTheContractLists) {
+    write("scene.json", hung_sheet(few_steps));
+    const Outcome outcome = run({"run", at("scene.json"), "-o", at("out"), "--threads", "1"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("converged"), std::string::npos) << outcome.out;
+    for (const char* file :
+         {"scene.json", "frames/index.jsonl", "final.ply", "report.json", "checkpoint/manifest.json", "log.jsonl"})
+        EXPECT_TRUE(fs::exists(folder_.path() / "out" / file)) << file;
+    const Json report = json_of("out/report.json");
+    EXPECT_EQ(report["status"], "converged");
+    EXPECT_EQ(report["name"], "hung");
+    EXPECT_EQ(report["intersecting_pairs"], 0);
+    EXPECT_EQ(report["threads"], 1);
+    EXPECT_EQ(report["plisse"].get<std::string>() + "\n", run({"--version"}).out);
+
+    expect_unusable({"run", at("scene.json"), "-o", at("out")}, "exists already");
+    EXPECT_EQ(run({"run", at("scene.json"), "-o", at("out"), "--overwrite", "--quiet"}).err, "");
+    const Outcome json = run({"run", at("scene.json"), "-o", at("json"), "--progress", "json", "--no-frames"});
+    std::istringstream lines(json.out);
+    for (std::string line; std::getline(lines, line);)
+        EXPECT_TRUE(Json::parse(line, nullptr, false).is_object()) << line;
+}
+
+TEST_F(Cli, ReportsRunsAloneAndSideBySide) {
+    write("scene.json", hung_sheet(few_steps));
+    ASSERT_EQ(run({"run", at("scene.json"), "-o", at("a"), "--quiet"}).code, 0);
+    ASSERT_EQ(run({"run", at("scene.json"), "-o", at("b"), "--quiet", "--level", "0"}).code, 0);
+    EXPECT_NE(run({"report", at("a")}).out.find("linear_solve"), std::string::npos);
+    EXPECT_NE(run({"report", at("a"), "--compare", at("b")}).out.find("b / a"), std::string::npos);
+    EXPECT_EQ(run({"report", at("a"), "--html", at("page.html")}).code, 0);
+    EXPECT_NE(read_text(at("page.html")).find("<svg"), std::string::npos);
+    expect_unusable({"report", at("nothing")}, "nothing");
+}
+
+class Resume : public Cli {
+protected:
+    /// Begins a run, ends it by a signal once it has saved a checkpoint, and returns what it ended with.
+    Outcome begin_and_end_by(int signal, const std::string& out) {
+        Program program(folder_.path(), {"run", at("scene.json"), "-o", at(out), "--threads", "1"});
+        const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!fs::exists(at(out + "/checkpoint/manifest.json")) && std::chrono::steady_clock::now() < patience)
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        program.send(signal);
+        return program.wait();
+    }
+    void expect_same_end(const std::string& out) {
+        const Outcome resumed = run({"run", at("scene.json"), "-o", at(out), "--resume", "--threads", "2"});
+        EXPECT_EQ(resumed.code, 0) << resumed.err;
+        EXPECT_EQ(read_text(at(out + "/final.ply")), read_text(at("whole/final.ply")));
+        EXPECT_EQ(read_text(at(out + "/frames/index.jsonl")), read_text(at("whole/frames/index.jsonl")));
+    }
+};
+
+TEST_F(Resume, AnInterruptedOrKilledRunEndsInTheSameBytes) {
+    write("scene.json", hung_sheet(many_steps));
+    ASSERT_EQ(run({"run", at("scene.json"), "-o", at("whole"), "--threads", "1"}).code, 0);
+
+    const Outcome interrupted = begin_and_end_by(SIGINT, "interrupted");
+    EXPECT_EQ(interrupted.code, 130);
+    EXPECT_NE(interrupted.err.find("--resume"), std::string::npos) << interrupted.err;
+    EXPECT_EQ(json_of("interrupted/report.json")["status"], "interrupted");
+    expect_same_end("interrupted");
+
+    EXPECT_EQ(begin_and_end_by(SIGKILL, "killed").code, -SIGKILL);
+    expect_same_end("killed");
+}
+
+TEST_F(Cli, HierarchyAndProlongGiveTheRestShapeBack) {
+    const Outcome made = run({"hierarchy", std::string(PLISSE_SOURCE_DIR) + "/tests/data/malformed/good/square.obj",
+                              "-o", at("h"), "--levels", "1", "--verify"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    write("scene.json", hung_sheet(few_steps));
+    ASSERT_EQ(run({"run", at("scene.json"), "-o", at("rest"), "--quiet"}).code, 0);
+    const Outcome levels =
+        run({"hierarchy", at("rest/final.ply"), "-o", at("levels"), "--levels", "2", "--coarsest", "20", "--verify"});
+    EXPECT_EQ(levels.code, 0) << levels.err << levels.out;
+    EXPECT_NE(levels.out.find("rest recovery error"), std::string::npos);
+    const Json json = json_of("levels/hierarchy.json");
+    ASSERT_EQ(json["levels"].size(), 2u);
+    EXPECT_LT(json["levels"][0]["vertices"], json["levels"][1]["vertices"]);
+    EXPECT_LT(json["verification"][0]["rest_error"].get<double>(), 1e-10);
+    EXPECT_EQ(
+        run({"prolong", at("levels"), "--from", "0", "--positions", at("levels/level-0.ply"), "-o", at("fine.ply")})
+            .code,
+        0);
+    EXPECT_EQ(run({"check", at("fine.ply")}).code, 0);
+    expect_unusable(
+        {"prolong", at("levels"), "--from", "5", "--positions", at("levels/level-0.ply"), "-o", at("x.ply")},
+        "--from 5");
+    expect_unusable(
+        {"prolong", at("levels"), "--from", "1", "--positions", at("levels/level-0.ply"), "-o", at("x.ply")},
+        "level-0.ply");
+    expect_unusable({"prolong", at("levels"), "--from", "0", "--positions", at("levels/level-0.ply"), "-o", at("x.ply"),
+                     "--operator", "affine"},
+                    "not supported in this version");
+}
+
+} // namespace
+} // namespace plisse

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <plisse/base/error.h>
+#include <plisse/decimate/decimate.h>
+#include <plisse/mesh/generate.h>
+#include <plisse/scene/hierarchy_folder.h>
+#include <plisse/scene/verify_hierarchy.h>
+
+#include "temporary_folder.h"
+
+namespace plisse {
+namespace {
+
+Hierarchy sphere_hierarchy() {
+    GeneratorOptions options;
+    options.shape = GeneratorShape::sphere;
+    options.edge_length = 0.12;
+    const TriangleMesh mesh = generate_mesh(options);
+    const std::vector<int> part(static_cast<std::size_t>(mesh.vertex_count()), 0);
+    DecimationOptions decimation;
+    decimation.levels = 3;
+    decimation.coarsest_vertices = 60;
+    return decimate({mesh.positions, mesh.faces, part, {}, {}}, decimation);
+}
+
+TEST(HierarchyFolder, ReadsBackWhatWasWritten) {
+    const Hierarchy hierarchy = sphere_hierarchy();
+    const TemporaryFolder folder;
+    write_hierarchy(folder.path(), hierarchy, {});
+    const HierarchyFiles files = read_hierarchy(folder.path());
+    ASSERT_EQ(files.levels.size(), hierarchy.levels.size());
+    for (std::size_t l = 0; l < files.levels.size(); ++l) {
+        EXPECT_EQ(files.levels[l].positions, hierarchy.levels[l].rest);
+        EXPECT_EQ(files.levels[l].faces, hierarchy.levels[l].faces);
+    }
+    for (std::size_t l = 0; l + 1 < files.levels.size(); ++l)
+        for (std::size_t v = 0; v < files.to_finest[l].size(); ++v) {
+            EXPECT_EQ(files.to_finest[l][v].face, hierarchy.levels[l].to_finest[v].face);
+            EXPECT_EQ(files.to_finest[l][v].weights, hierarchy.levels[l].to_finest[v].weights);
+        }
+}
+
+TEST(HierarchyFolder, RefusesAMapOfOtherMeshes) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(read_hierarchy(folder.path()), InputError);
+    write_hierarchy(folder.path(), sphere_hierarchy(), {});
+    std::filesystem::copy_file(folder.path() / "level-0.ply", folder.path() / "level-2.ply",
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_THROW(read_hierarchy(folder.path()), InputError);
+    write_text(folder.path() / "map.json", "{\"levels\": 3}");
+    EXPECT_THROW(read_hierarchy(folder.path()), InputError);
+}
+
+TEST(VerifyHierarchy, HoldsForADecimationAndFailsForABrokenMap) {
+    Hierarchy hierarchy = sphere_hierarchy();
+    const auto good = verify_hierarchy(hierarchy);
+    ASSERT_EQ(good.size(), 2u);
+    for (const LevelVerification& level : good) {
+        EXPECT_TRUE(level.holds()) << "level " << level.level << " rest " << level.rest_error << " rigid "
+                                   << level.rigid_error;
+        EXPECT_GT(level.mapped_faces, 0);
+    }
+    Hierarchy negative = hierarchy;
+    negative.levels[0].to_finest[7].weights = Vec3(-0.1, 0.6, 0.5);
+    EXPECT_FALSE(verify_hierarchy(negative)[0].holds());
+    Hierarchy coincident = hierarchy;
+    coincident.levels[0].to_finest[7] = coincident.levels[0].to_finest[8];
+    EXPECT_FALSE(verify_hierarchy(coincident)[0].holds());
+    Hierarchy missing = hierarchy;
+    missing.levels[0].to_finest[7].face = -1;
+    EXPECT_FALSE(verify_hierarchy(missing)[0].holds());
+}
+
+} // namespace
+} // namespace plisse
