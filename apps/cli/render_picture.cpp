@@ -1,6 +1,7 @@
 #include "render_picture.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/core.h>
 
@@ -100,15 +101,24 @@ void share_range(std::vector<Portrait>& portraits) {
         }
 }
 
-Positions points_of_all(const std::vector<Portrait>& portraits) {
+double diagonal(const Positions& points) {
+    return points.cols() == 0 ? 0 : (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
+/// Points that frame all pictures alike, so that they can be compared; empty when some body has moved so far that the
+/// others would hardly be seen.
+Positions common_frame(const std::vector<Portrait>& portraits) {
+    constexpr double farthest = 3; // times the smallest picture's own size
     Positions all(3, 0);
+    double smallest = std::numeric_limits<double>::infinity();
     for (const Portrait& portrait : portraits) {
         const Positions points = framing_points(portrait.subject());
+        smallest = std::min(smallest, diagonal(points));
         Positions joined(3, all.cols() + points.cols());
         joined << all, points;
         all.swap(joined);
     }
-    return all;
+    return diagonal(all) <= farthest * smallest ? all : Positions(3, 0);
 }
 
 } // namespace
@@ -145,8 +155,8 @@ Image draw_sheet(const SavedRun& run, Coloring coloring, DrawOptions options) {
     for (const SheetEntry& entry : entries)
         portraits.push_back(portrait_of_frame(run, entry.frame, coloring));
     share_range(portraits);
-    const Positions frame = points_of_all(portraits);
-    options.frame = &frame;
+    const Positions frame = common_frame(portraits);
+    options.frame = frame.cols() > 0 ? &frame : nullptr;
     options.tell_bodies_apart = coloring != Coloring::none;
 
     std::vector<Panel> panels;
