@@ -208,7 +208,7 @@ TEST(CcdTable, Row18PointTriangle) {
 
 TEST(Ccd, NeverOvershootsOnRandomMotions) {
     Random random(4);
-    int stopped = 0;
+    int stopped = 0, sure = 0;
     for (int trial = 0; trial < 4000; ++trial) {
         const StencilKind kind = trial % 2 ? pt : ee;
         const double speed = std::pow(10.0, random.uniform(-2, 1));
@@ -221,6 +221,8 @@ TEST(Ccd, NeverOvershootsOnRandomMotions) {
             const double t = safe_step(kind, m.from, m.by(), ratio * start);
             ASSERT_GT(t, 0);
             stopped += t < 1;
+            ASSERT_FALSE(t < 1 && keeps_apart(kind, m.from, m.by(), start, ratio * start));
+            sure += keeps_apart(kind, m.from, m.by(), start, ratio * start);
             for (int k = 0; k <= 200; ++k)
                 ASSERT_GE(distance(kind, m.at(t * k / 200)), ratio * start * (1 - 1e-12));
             if (t < 1 && ratio < 0.99) { // and stops only where the distance has gone
@@ -229,6 +231,7 @@ TEST(Ccd, NeverOvershootsOnRandomMotions) {
         }
     }
     EXPECT_GT(stopped, 2000);
+    EXPECT_GT(sure, 500);
 }
 
 TEST(Ccd, StartingVeryNear) {

@@ -46,6 +46,7 @@ struct Contact::State {
     ActiveSet active;
     Positions active_at{3, 0}; ///< where the active set was found
     Positions sweep_start, sweep_end;
+    bool sweeps_begin_at_x = true;
     Candidates::Drift sweep_drift;
     std::vector<Vec12> gradients;
     std::vector<Mat12> hessians;
@@ -79,8 +80,12 @@ double Contact::State::safe_length_of(StencilKind kind, int candidate, const Pos
     // Any two corners bound the distance at x from above.
     if (sweep_squared >= options.ccd_ratio * options.ccd_ratio * (at_x.col(0) - at_x.col(3)).squaredNorm())
         return length;
-    const double kept = std::min(options.ccd_ratio * std::sqrt(squared_distance(kind, at_x)), options.distance);
-    return safe_step(kind, start, gather(d, vertices), kept, length);
+    const double distance = std::sqrt(squared_distance(kind, at_x));
+    const double kept = std::min(options.ccd_ratio * distance, options.distance);
+    const Stencil motion = gather(d, vertices);
+    if (sweeps_begin_at_x && keeps_apart(kind, at_x, motion, distance, kept, length))
+        return length;
+    return safe_step(kind, start, motion, kept, length);
 }
 
 double Contact::State::safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const {
@@ -163,8 +168,8 @@ void Contact::add_hessian(const Positions& x, NewtonSystem& system, bool project
     state_->evaluate(x);
     const auto& pairs = state_->active.pairs();
     auto& hessians = state_->hessians;
-    const auto projected_hessian_of = state_->options.hessian == HessianKind::projected ? pair_projected_hessian
-                                                                                        : pair_gauss_newton_hessian;
+    const auto projected_hessian_of =
+        state_->options.hessian == HessianKind::projected ? pair_projected_hessian : pair_gauss_newton_hessian;
     const auto hessian_of = project ? projected_hessian_of : pair_hessian;
     constexpr std::size_t batch_size = 1024; // blocks of a batch stay in the cache until they are scattered
     for (std::size_t begin = 0; begin < pairs.size(); begin += batch_size) {
@@ -185,6 +190,7 @@ double Contact::max_step(const Positions& x, const Positions& d) {
     const PhaseScope scope(*s.times, Phase::ccd);
     double done = 0, share = 1;
     while (done < 1) {
+        s.sweeps_begin_at_x = done == 0;
         s.sweep_start = x + done * d;
         s.sweep_end = x + d;
         double until = 1;

@@ -27,6 +27,9 @@ inline double squared_distance(StencilKind kind, const Stencil& x) {
 /// closest points cost steps and never safety; round-off in positions and products is added to `gap`.
 double safe_step(StencilKind kind, const Stencil& x, const Stencil& d, double gap, double end = 1);
 
+/// Whether safe_step is sure to return `end`, judged by the distance at the start and the relative speed alone.
+bool keeps_apart(StencilKind kind, const Stencil& x, const Stencil& d, double distance, double gap, double end = 1);
+
 /// Share of (starting distance - gap) that safe_step may leave unused.
 inline constexpr double ccd_tolerance = 1e-6;
 
