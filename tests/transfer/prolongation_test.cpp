@@ -182,17 +182,20 @@ TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
     }
     const Eigen::MatrixXd expected = jacobian.transpose() * fine * jacobian;
 
-    const GalerkinProduct product(p, 60,
-                                  [&](int e) { return std::span<const int>(elements[static_cast<std::size_t>(e)]); });
+    std::vector<Edge> pairs;
+    for (const auto& vertices : elements)
+        for (int v : vertices)
+            for (int w : vertices)
+                if (v < w)
+                    pairs.push_back({v, w});
+    NewtonSystem fine_system(std::vector<std::uint8_t>(120, 0), pairs);
+    fine_system.begin({});
+    for (std::size_t e = 0; e < elements.size(); ++e)
+        fine_system.add(elements[e], hessians[e]);
+    const GalerkinProduct product(p, pairs);
     NewtonSystem system(std::vector<std::uint8_t>(27, 0), product.pairs());
     system.begin({});
-    product.add(
-        blocks,
-        [&](int e, double* out) {
-            const Eigen::MatrixXd& h = hessians[static_cast<std::size_t>(e)];
-            std::copy(h.data(), h.data() + h.size(), out);
-        },
-        system);
+    product.add(blocks, fine_system, system);
     Eigen::MatrixXd actual = Eigen::MatrixXd::Zero(27, 27);
     for (int c = 0; c < 9; ++c) {
         const int begin = system.column_starts()[static_cast<std::size_t>(c)];

@@ -18,6 +18,8 @@ public:
     /// mesh must outlive the object. distance: the contact distance, m.
     Candidates(const CollisionMesh& mesh, double distance, bool self);
 
+    /// Drops all regions, so that the next search depends on its arguments alone.
+    void forget() { regions_.clear(); }
     /// Whether each vertex is within its region.
     bool contain(const Positions& x) const;
 

@@ -114,6 +114,11 @@ void Contact::set_times(PhaseTimes* times) {
     state_->times = times;
 }
 
+void Contact::forget() {
+    state_->candidates.forget();
+    state_->active_at.resize(3, 0);
+}
+
 double Contact::value(const Positions& x) {
     const PhaseScope scope(*state_->times, Phase::contact);
     state_->evaluate(x);

@@ -30,6 +30,9 @@ public:
     const CollisionMesh& mesh() const;
     const ContactOptions& options() const;
 
+    /// Drops kept candidates: what follows then depends on the calls to come alone, to the bit.
+    void forget();
+
     /// Barrier energy, J.
     double value(const Positions& x);
     /// Adds dB/dx, N.

@@ -161,6 +161,15 @@ void NewtonSystem::add_block(int i, int j, const Mat3& block) {
                 values[b * stride + a] += block(a, b);
 }
 
+Mat3 NewtonSystem::block(int i, int j) const {
+    const int column = row_of_vertex_[at(j)];
+    const int k = find_block(row_of_vertex_[at(i)], column);
+    assert(k >= 0);
+    const std::size_t start = at(column_starts_[at(column)]);
+    const double* values = values_.data() + 9 * start + 3 * (at(k) - start);
+    return Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>(values, Eigen::OuterStride<>(column_stride(column)));
+}
+
 VecX NewtonSystem::gather(const VecX& vertices) const {
     VecX rows(3 * row_count());
     for (int row = 0; row < row_count(); ++row)

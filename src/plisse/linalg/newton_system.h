@@ -46,6 +46,9 @@ public:
     /// Adds block (i, j), i >= j, and by symmetry its transpose at (j, i).
     void add_block(int i, int j, const Mat3& block);
 
+    /// Block (i, j) of the lower triangle, i >= j; both have rows and the pattern holds the block.
+    Mat3 block(int i, int j) const;
+
     /// H u over all unknowns, 3 per vertex.
     const VecX& coupling() const { return coupling_; }
 

@@ -132,11 +132,4 @@ double ShellEnergies::largest_stretch(const Positions& y) const {
     return membrane_ ? membrane_->largest_stretch(y) : 1;
 }
 
-std::vector<const ElementEnergy*> ShellEnergies::elastic_terms() const {
-    std::vector<const ElementEnergy*> terms;
-    for (const Term& term : elastic_)
-        terms.push_back(term.energy.get());
-    return terms;
-}
-
 } // namespace plisse

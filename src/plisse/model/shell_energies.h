@@ -39,9 +39,6 @@ public:
     Positions open_pressure_forces(const Positions& y, double t) const;
     double largest_stretch(const Positions& y) const;
 
-    /// The elastic energies, for products with a Jacobian.
-    std::vector<const ElementEnergy*> elastic_terms() const;
-
 private:
     struct Term {
         std::unique_ptr<ElementEnergy> energy;

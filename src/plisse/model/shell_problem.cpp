@@ -53,7 +53,8 @@ double largest_norm(const Positions& forces) {
 
 struct ShellProblem::Carrier {
     Prolongation prolongation;
-    std::vector<GalerkinProduct> products; ///< one per elastic term
+    NewtonSystem fine_hessian; ///< of the carried elastic energies; empty unless the curvature is Galerkin's
+    GalerkinProduct product;
 };
 
 ShellProblem::ShellProblem(const Discretization& discretization, int level, EnergiesOf energies_of, Context& context)
@@ -72,7 +73,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
                                   model.hierarchy.prolongation);
         mass_ = prolongation.pull_back_values(dead_loads_.masses());
         if (proxy)
-            carrier_ = std::make_unique<Carrier>(Carrier{std::move(prolongation), {}});
+            carrier_ = std::make_unique<Carrier>(Carrier{std::move(prolongation), {}, {}});
     } else {
         mass_ = dead_loads_.masses();
     }
@@ -87,10 +88,12 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
         if (!uses_galerkin())
             curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
                                                          ShellEnergies::Parts{true, !bending_on_level, false});
-        else
-            for (const ElementEnergy* term : elasticity_->elastic_terms())
-                carrier_->products.emplace_back(carrier_->prolongation, term->element_count(),
-                                                [term](int e) { return term->vertices(e); });
+        else {
+            const std::vector<Edge> pairs = elasticity_->pairs();
+            carrier_->fine_hessian =
+                NewtonSystem(std::vector<std::uint8_t>(3 * at(carrier_->prolongation.fine_count()), 0), pairs);
+            carrier_->product = GalerkinProduct(carrier_->prolongation, pairs);
+        }
     } else {
         elasticity_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
                                                       ShellEnergies::Parts{});
@@ -124,8 +127,7 @@ void ShellProblem::build_system() {
     std::vector<Edge> pairs;
     const auto append = [&](const std::vector<Edge>& more) { pairs.insert(pairs.end(), more.begin(), more.end()); };
     if (carrier_) {
-        for (const GalerkinProduct& product : carrier_->products)
-            append(product.pairs());
+        append(carrier_->product.pairs());
         if (curvature_)
             append(curvature_->pairs());
         if (level_bending_)
@@ -151,6 +153,7 @@ void ShellProblem::begin_step(const Positions& current, const Positions& anchor,
         load_forces_ = prolongation.pull_back_lagged(load_forces_);
     }
     system_.reset_pattern();
+    contact_->forget();
     x_memo_.resize(3, 0);
     const VecX x = as_vector(current);
     load_forces_ += elasticity_->open_pressure_forces(carried(x), t);
@@ -255,12 +258,9 @@ void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
         } else if (curvature_) {
             curvature_->add_hessian(points, system, project);
         } else {
-            const Positions& y = y_memo_;
-            const std::vector<Prolongation::Block> jacobian = carrier_->prolongation.jacobian(points);
-            const std::vector<const ElementEnergy*> terms = elasticity_->elastic_terms();
-            for (std::size_t k = 0; k < terms.size(); ++k)
-                carrier_->products[k].add(
-                    jacobian, [&](int e, double* hessian) { terms[k]->hessian(e, y, project, hessian); }, system);
+            carrier_->fine_hessian.begin({});
+            elasticity_->add_hessian(y_memo_, carrier_->fine_hessian, project);
+            carrier_->product.add(carrier_->prolongation.jacobian(points), carrier_->fine_hessian, system);
         }
         if (level_bending_)
             level_bending_->add_hessian(points, system, project);
