@@ -126,6 +126,7 @@ bool ShellProblem::uses_galerkin() const {
 void ShellProblem::build_system() {
     std::vector<Edge> pairs;
     const auto append = [&](const std::vector<Edge>& more) { pairs.insert(pairs.end(), more.begin(), more.end()); };
+    append(contact_->mesh().edges); // which contact couples too
     if (carrier_) {
         append(carrier_->product.pairs());
         if (curvature_)

@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <optional>
+
+#include <plisse/base/parallel.h>
+#include <plisse/drive/run.h>
+
+#include "small_models.h"
+
+using namespace plisse;
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
+
+/// Intersecting pairs by exact constructions, sharing no code with the solver: what two triangles have in common must
+/// be nothing, or just their shared corner or edge.
+int count_intersections(const Positions& x, const std::vector<Face>& faces, int body_vertices) {
+    const auto point = [&](int v) { return Kernel::Point_3(x(0, v), x(1, v), x(2, v)); };
+    const auto triangle = [&](const Face& f) { return Kernel::Triangle_3(point(f[0]), point(f[1]), point(f[2])); };
+    int count = 0;
+    for (std::size_t a = 0; a < faces.size(); ++a)
+        for (std::size_t b = a + 1; b < faces.size(); ++b) {
+            if (faces[a][0] >= body_vertices && faces[b][0] >= body_vertices)
+                continue;
+            const Kernel::Triangle_3 ta = triangle(faces[a]), tb = triangle(faces[b]);
+            if (!CGAL::do_overlap(ta.bbox(), tb.bbox()) || !CGAL::do_intersect(ta, tb))
+                continue;
+            int shared = 0;
+            for (int v : faces[a])
+                shared += std::find(faces[b].begin(), faces[b].end(), v) != faces[b].end();
+            const auto common = CGAL::intersection(ta, tb);
+            const bool harmless = (shared == 1 && boost::get<Kernel::Point_3>(&*common)) ||
+                                  (shared == 2 && boost::get<Kernel::Segment_3>(&*common));
+            count += !harmless;
+        }
+    return count;
+}
+
+/// Keeps what a run says; can cancel it after some checkpoints.
+struct Witness : Recorder {
+    explicit Witness(Context* cancelled = nullptr, int checkpoints_before_cancel = 0)
+        : context(cancelled), left(checkpoints_before_cancel) {}
+    void on_hierarchy(const Hierarchy& h) override { hierarchy = h; }
+    void on_frame(const Frame& frame) override {
+        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(frame.level)];
+        intersections += count_level_intersections(*frame.positions, level);
+    }
+    void on_checkpoint(const Checkpoint& checkpoint) override {
+        last = checkpoint;
+        if (context && --left == 0)
+            context->cancel();
+    }
+    static int count_level_intersections(const Positions& x, const HierarchyLevel& level) {
+        // Bodies first, so that the brute force can tell obstacles by their number.
+        std::vector<int> order(level.part.size());
+        int next = 0;
+        for (int pass = 0; pass < 2; ++pass)
+            for (std::size_t v = 0; v < order.size(); ++v)
+                if ((level.part[v] > 0) == (pass == 1))
+                    order[v] = next++;
+        const int bodies = static_cast<int>(std::count(level.part.begin(), level.part.end(), 0));
+        Positions y(3, x.cols());
+        for (std::size_t v = 0; v < order.size(); ++v)
+            y.col(order[v]) = x.col(static_cast<int>(v));
+        std::vector<Face> faces;
+        for (const Face& f : level.faces)
+            faces.push_back({order[static_cast<std::size_t>(f[0])], order[static_cast<std::size_t>(f[1])],
+                             order[static_cast<std::size_t>(f[2])]});
+        return count_intersections(y, faces, bodies);
+    }
+
+    Context* context;
+    int left;
+    Hierarchy hierarchy;
+    int intersections = 0;
+    std::optional<Checkpoint> last;
+};
+
+RunResult run_to_end(const Model& model, Witness& witness, const RunOptions& options = {}) {
+    Context context;
+    return run(model, options, witness, context);
+}
+
+TEST(Run, DrapesProgressivelyWithoutAnIntersection) {
+    const Model model = small_drape();
+    Witness witness;
+    const RunResult result = run_to_end(model, witness);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_EQ(result.level, 2);
+    EXPECT_EQ(result.positions.cols(), model.mesh.vertex_count());
+    EXPECT_EQ(witness.intersections, 0);
+    EXPECT_EQ(result.report.intersecting_pairs, 0);
+    EXPECT_GT(result.report.levels.back().energy.contact, 0);
+    for (const LevelReport& level : result.report.levels)
+        EXPECT_TRUE(level.equilibrium) << level.level;
+    // The ball carries the cloth's weight.
+    const Material& material = model.bodies[0].material;
+    const double weight = 0.36 * material.thickness * material.density * 9.81;
+    EXPECT_NEAR(result.report.reactions[1].force.y(), weight, 1e-2 * weight);
+}
+
+TEST(Run, PressesABallWithPlatesThatArrive) {
+    const Model model = small_press();
+    Witness witness;
+    const RunResult result = run_to_end(model, witness);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_TRUE(result.report.lagging.empty());
+    EXPECT_EQ(witness.intersections, 0);
+    for (const Obstacle& plate : model.obstacles)
+        for (int v = plate.vertices.begin; v < plate.vertices.end; ++v) {
+            const Vec3 scripted = plate.motion.apply(model.mesh.positions.col(v), model.solve.duration);
+            EXPECT_LT((result.positions.col(v) - scripted).norm(), 1e-9);
+        }
+    const double up = result.report.reactions[0].force.y(), down = result.report.reactions[1].force.y();
+    EXPECT_LT(up, -1e-3); // the upper plate is held down
+    EXPECT_NEAR(up, -down, 1e-2 * std::abs(up));
+}
+
+TEST(Run, GivesTheSameBitsOnAnyNumberOfThreads) {
+    const Model model = small_drape();
+    Positions first;
+    for (int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        Witness witness;
+        const RunResult result = run_to_end(model, witness);
+        if (threads == 1)
+            first = result.positions;
+        else
+            EXPECT_EQ(first, result.positions);
+    }
+}
+
+TEST(Run, ResumesToTheSameBits) {
+    const Model model = small_press();
+    Witness whole;
+    const RunResult uninterrupted = run_to_end(model, whole);
+    for (int checkpoints : {3, 9}) {
+        Context context;
+        Witness cut(&context, checkpoints);
+        const RunResult interrupted = run(model, {}, cut, context);
+        EXPECT_EQ(interrupted.report.status, RunStatus::interrupted);
+        RunOptions options;
+        options.resume = &*cut.last;
+        Witness rest;
+        const RunResult resumed = run_to_end(model, rest, options);
+        EXPECT_EQ(resumed.report.status, RunStatus::converged);
+        EXPECT_EQ(resumed.positions, uninterrupted.positions);
+    }
+}
+
+TEST(Run, StaysAtRestWithoutLoads) {
+    for (Method method : {Method::progressive, Method::direct}) {
+        Model model;
+        model.name = "rest";
+        model.mesh.positions.resize(3, 0);
+        Body ball;
+        ball.name = "ball";
+        append_part(model, sphere_mesh(0.1, 0.03), Vec3::Zero(), ball.vertices, ball.faces);
+        model.bodies.push_back(ball);
+        model.gravity = Track<Vec3>(Vec3::Zero());
+        model.contact.distance = 0.05; // far above the edges
+        model.hierarchy = {3, 60};
+        model.solve.method = method;
+        model.solve.time_step = 0.1;
+        model.solve.duration = 0.3;
+        Witness witness;
+        const RunResult result = run_to_end(model, witness);
+        EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+        EXPECT_LT((result.positions - model.mesh.positions).cwiseAbs().maxCoeff(), 1e-10 * 0.35);
+    }
+}
+
+TEST(Run, NeverCallsACutStepConverged) {
+    Model model = small_press();
+    model.solve.method = Method::direct;
+    model.solve.settle = false;
+    model.solve.max_iterations_per_step = 1;
+    Witness witness;
+    EXPECT_EQ(run_to_end(model, witness).report.status, RunStatus::not_converged);
+}
+
+} // namespace

@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <plisse/base/random.h>
+#include <plisse/model/shell_problem.h>
+
+#include "drive/small_models.h"
+
+using namespace plisse;
+
+namespace {
+
+/// A curved, pressurised, loaded body near a ball, so that every term of F_l acts.
+Model loaded_model(BendingOn bending_on, ProlongationOperator kind) {
+    Model model;
+    model.name = "loaded";
+    model.mesh.positions.resize(3, 0);
+    Body body;
+    body.name = "body";
+    body.material = {1000, 1e6, 0.3, 2e-3, 1};
+    body.pressure = Track<double>(200);
+    append_part(model, sphere_mesh(0.1, 0.03), Vec3::Zero(), body.vertices, body.faces);
+    model.bodies.push_back(body);
+    Obstacle ball;
+    ball.name = "ball";
+    append_part(model, sphere_mesh(0.1, 0.04), Vec3(0, -0.205, 0), ball.vertices, ball.faces);
+    model.obstacles.push_back(ball);
+    model.loads.push_back({Load::Kind::force, 0, {0, 1, 2}, Track<Vec3>(Vec3(0.1, 0.2, -0.3))});
+    model.contact.distance = 8e-3;
+    model.hierarchy = {3, 60, kind, bending_on};
+    return model;
+}
+
+class ProxyDerivatives : public testing::TestWithParam<std::tuple<int, BendingOn, ProlongationOperator>> {};
+
+TEST_P(ProxyDerivatives, GradientMatchesCentralDifferences) {
+    const auto [level, bending_on, kind] = GetParam();
+    Context context;
+    const Model model = loaded_model(bending_on, kind);
+    const Discretization discretization(model, 3, context);
+    ShellProblem problem(discretization, level, EnergiesOf::finest, context);
+    Random random(3);
+    Positions start = discretization.start(level);
+    const Positions anchor = start;
+    problem.begin_step(start, anchor, 0, 0.1);
+    VecX x = as_vector(start);
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+        if (!problem.system().prescribed()[static_cast<std::size_t>(i)])
+            x[i] += random.uniform(-1e-3, 1e-3);
+    ASSERT_TRUE(std::isfinite(problem.value(x)));
+    EXPECT_GT(problem.active_contacts(x), 0);
+    VecX gradient;
+    problem.gradient(x, gradient);
+    for (int direction = 0; direction < 20; ++direction) {
+        VecX d(x.size());
+        for (double& entry : d)
+            entry = random.uniform(-1, 1);
+        const double h = 1e-7;
+        const double difference = (problem.value(x + h * d) - problem.value(x - h * d)) / (2 * h);
+        EXPECT_NEAR(difference, gradient.dot(d), 1e-6 * gradient.norm() * d.norm());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Levels, ProxyDerivatives,
+    testing::Combine(testing::Values(0, 1, 2), testing::Values(BendingOn::finest, BendingOn::level),
+                     testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic)));
+
+TEST(ShellProblem, RecoversRestAndFeelsNothingThereOnEveryLevel) {
+    Context context;
+    Model model = loaded_model(BendingOn::finest, ProlongationOperator::shell);
+    model.bodies[0].pressure = Track<double>(0);
+    model.loads.clear();
+    model.gravity = Track<Vec3>(Vec3::Zero());
+    const Discretization discretization(model, 3, context);
+    const double scale = model.bodies[0].material.youngs_modulus * model.bodies[0].material.thickness * 0.1;
+    for (int level = 0; level < 3; ++level) {
+        ShellProblem problem(discretization, level, EnergiesOf::finest, context);
+        const Positions start = discretization.start(level);
+        problem.begin_step(start, start, 0, 0.1);
+        const VecX x = as_vector(start);
+        EXPECT_LT((problem.carried(x).leftCols(model.bodies[0].vertices.end) -
+                   model.mesh.positions.leftCols(model.bodies[0].vertices.end))
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  1e-10 * 0.35);
+        VecX gradient;
+        problem.gradient(x, gradient);
+        EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-11 * scale);
+        EXPECT_EQ(problem.active_contacts(x), 0);
+        EXPECT_EQ(problem.residual(x), 0);
+    }
+}
+
+TEST(ShellProblem, SharesTheMassOutOverEveryLevel) {
+    Context context;
+    const Model model = loaded_model(BendingOn::finest, ProlongationOperator::shell);
+    const Discretization discretization(model, 3, context);
+    Positions weight;
+    for (int level = 0; level < 3; ++level) {
+        ShellProblem problem(discretization, level, EnergiesOf::finest, context);
+        const Positions start = discretization.start(level);
+        problem.begin_step(start, start, 0, 0.1);
+        const Vec3 total = problem.forces(as_vector(start)).gravity.rowwise().sum();
+        if (level == 0)
+            weight = total;
+        EXPECT_LT(total.y(), 0);
+        EXPECT_NEAR(total.y(), weight(1, 0), 1e-12);
+    }
+}
+
+} // namespace
