@@ -36,10 +36,12 @@ int timeline_steps(double duration, double h) {
 LevelStepper::LevelStepper(const Discretization& discretization, int level, EnergiesOf energies_of, bool is_last,
                            RunLog& log)
     : discretization_(discretization), settings_(discretization.model().solve), level_(level), is_last_(is_last),
-      log_(log), problem_(discretization, level, energies_of, log.context()), times_at_start_(log.context().times) {
-    progress_.level = level;
-    progress_.settle_time_step = settings_.time_step;
-    progress_.settle_tolerance = settings_.tolerance;
+      log_(log), problem_(discretization, level, energies_of, log.context()), times_at_start_(log.context().times) {}
+
+void LevelStepper::start_from(const Checkpoint& progress) {
+    progress_ = progress;
+    x_ = as_vector(progress.positions);
+    problem_.begin_step(progress.positions, progress.positions, progress.t, settings_.time_step);
 }
 
 int LevelStepper::iteration_cap() const {

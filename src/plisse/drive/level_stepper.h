@@ -13,7 +13,8 @@ public:
     /// is_last: this level's result is the run's, so its steps may not be cut short unless the scene says so.
     LevelStepper(const Discretization& discretization, int level, EnergiesOf energies_of, bool is_last, RunLog& log);
 
-    void set_positions(const Positions& x) { x_ = as_vector(x); }
+    /// Takes up a run where a checkpoint left it (or at the start of a level).
+    void start_from(const Checkpoint& progress);
     Positions positions() const { return as_positions(x_); }
     Checkpoint& progress() { return progress_; }
 

@@ -110,6 +110,7 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
     shown.level_count = discretization.finest() + 1;
     shown.phase = "refine";
     shown.time = t;
+    shown.duration = discretization.model().solve.duration;
     for (const std::vector<int>& batch : coarse.batches) {
         if (context.cancelled()) {
             result.cancelled = true;

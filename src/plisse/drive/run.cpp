@@ -170,8 +170,7 @@ bool Driver::simulate() {
     for (int level = progress.level;; ++level) {
         const EnergiesOf energies = is_direct(model_) ? EnergiesOf::level : EnergiesOf::finest;
         LevelStepper stepper(discretization_, level, energies, level == last_level_, log_);
-        stepper.set_positions(progress.positions);
-        stepper.progress() = progress;
+        stepper.start_from(progress);
         result_.level = level;
         const bool goes_on = progress.settled || run_level(stepper);
         result_.positions = stepper.positions();

@@ -48,6 +48,10 @@ std::vector<int> label_handles(const Model& model, std::vector<std::vector<int>>
     return labels;
 }
 
+/// Coarsening an obstacle this small saves nothing and costs its shape: a box would lose its faces' planes, and what it
+/// presses slips out.
+constexpr int least_decimated_obstacle = 300;
+
 Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::vector<int>& labels, int level_count,
                           Context& context) {
     const std::vector<int> part = model.vertex_parts();
@@ -57,8 +61,9 @@ Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::
     options.coarsest_vertices = model.hierarchy.coarsest_vertices;
     options.obstacle_part.assign(at(model.part_count()), 0);
     for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
+        const Obstacle& obstacle = model.obstacles[o];
         options.obstacle_part[model.bodies.size() + o] = 1;
-        frozen[model.bodies.size() + o] = !model.obstacles[o].progressive;
+        frozen[model.bodies.size() + o] = !obstacle.progressive || obstacle.vertices.size() < least_decimated_obstacle;
     }
     DecimationSummary summary;
     Hierarchy hierarchy = decimate({rest, model.mesh.faces, part, labels, frozen}, options, &context, &summary);

@@ -115,6 +115,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
         elastic_scale = std::max(elastic_scale, body.material.youngs_modulus * body.material.thickness);
     const double diagonal = bounding_box(mesh.rest).diagonal();
     force_round_off_ = 1e-12 * elastic_scale * diagonal;
+    value_round_off_ = 1e-16 * elastic_scale * diagonal * diagonal;
 }
 
 ShellProblem::~ShellProblem() = default;

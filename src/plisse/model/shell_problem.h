@@ -43,6 +43,7 @@ public:
     void begin_step(const Positions& current, const Positions& anchor, double t, double h);
 
     double value(const VecX& x) override;
+    double round_off() const override { return value_round_off_; }
     void gradient(const VecX& x, VecX& gradient) override;
     void assemble(const VecX& x, NewtonSystem& system, bool project) override;
     NewtonSystem& system() override { return system_; }
@@ -85,7 +86,7 @@ private:
     Positions anchor_;
     double inverse_h_squared_ = 0;
     Positions gravity_forces_, load_forces_; ///< N on the carrying mesh, at the step's time
-    double force_round_off_ = 0;
+    double force_round_off_ = 0, value_round_off_ = 0;
 
     Positions x_memo_, y_memo_;
 };

@@ -16,8 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::array written_entries = {"scene.json",  "meshes",     "frames",   "final.ply",
-                                        "report.json", "checkpoint", "log.jsonl"};
+constexpr std::array written_entries = {"scene.json", "meshes",      "levels",     "frames",
+                                        "final.ply",  "report.json", "checkpoint", "log.jsonl"};
 
 void remove_run(const fs::path& folder) {
     for (const char* entry : written_entries)
@@ -111,6 +111,9 @@ void RunFolder::on_hierarchy(const Hierarchy& hierarchy) {
     }
     if (!levels_.empty())
         levels_.back().mesh.attributes = attributes_;
+    fs::create_directories(folder_ / "levels");
+    for (std::size_t level = 0; level < levels_.size(); ++level)
+        write_ply(folder_ / fmt::format("levels/{}.ply", level), levels_[level].mesh, levels_[level].face_body);
 }
 
 void RunFolder::on_iteration(const IterationRecord& record) {

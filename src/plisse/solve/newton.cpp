@@ -161,7 +161,7 @@ private:
         PhaseScope scope(context_.times, Phase::line_search);
         const double merit = value_ + penalty_.value();
         const double merit_slope = direction.slope - penalty_.value();
-        const double noise = 1e-14 * std::max(std::abs(value_), std::abs(merit));
+        const double noise = objective_.round_off() + 1e-14 * std::max(std::abs(value_), std::abs(merit));
         double alpha = objective_.max_step(x_, direction.d);
         for (int halving = 0; halving <= options_.max_halvings && alpha > 0; ++halving, alpha *= 0.5) {
             trial_ = x_ + alpha * direction.d;
@@ -169,6 +169,11 @@ private:
             const double trial_merit = trial_value_ + penalty_.value() * (1 - alpha);
             if (trial_merit <= merit + options_.sufficient_decrease * alpha * merit_slope + noise)
                 return alpha;
+            // Contact that begins on the way is not in the model that set the weight: it is raised to what this takes.
+            if (penalty_.share > 0 && halving >= most_script_halvings && std::isfinite(trial_value_)) {
+                penalty_.weight = std::max(penalty_.weight, 2 * (trial_value_ - value_) / (penalty_.share * alpha));
+                return alpha;
+            }
         }
         return 0;
     }
@@ -197,6 +202,7 @@ private:
     double value_ = 0, trial_value_ = 0;
     int short_steps_ = 0;
     static constexpr int most_exact_wait = 8;
+    static constexpr int most_script_halvings = 2;
     bool full_step_ = false;
     int exact_wait_ = 0, exact_failures_ = 0;
 };

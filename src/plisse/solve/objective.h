@@ -12,6 +12,8 @@ public:
 
     /// Value at x; +infinity where x is not feasible.
     virtual double value(const VecX& x) = 0;
+    /// How far off round-off may put a value, whatever the value is.
+    virtual double round_off() const { return 0; }
     virtual void gradient(const VecX& x, VecX& gradient) = 0;
     /// Fills the system (between begin and the last add) with the Hessian at x, or, when `project` is set, with a
     /// positive semi-definite approximation of it.
