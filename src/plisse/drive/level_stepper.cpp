@@ -48,13 +48,14 @@ int LevelStepper::iteration_cap() const {
     return settings_.max_iterations_per_step.value_or(is_last_ ? final_iteration_cap : preview_iteration_cap);
 }
 
-NewtonSummary LevelStepper::step(double t, double h, double tolerance, const VecX& anchor, const char* phase) {
+NewtonSummary LevelStepper::step(double t, double h, double tolerance, const VecX& anchor, const char* phase,
+                                 int most_iterations) {
     // Forgetting the ordering here makes a resumed run take the same steps, to the bit, as an uninterrupted one.
     cholesky_.reset();
     problem_.begin_step(as_positions(x_), as_positions(anchor), t, h);
     NewtonOptions options;
     options.tolerance = tolerance * settings_.time_step;
-    options.max_iterations = iteration_cap();
+    options.max_iterations = most_iterations;
     LevelReport& report = log_.level_report(level_);
     Progress shown;
     shown.level = level_;
@@ -94,7 +95,7 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
         VecX anchor = x_;
         if (settings_.dynamics && progress_.velocity.cols() > 0)
             anchor += h * as_vector(progress_.velocity);
-        const NewtonSummary summary = step(t, h, settings_.tolerance, anchor, "preview");
+        const NewtonSummary summary = step(t, h, settings_.tolerance, anchor, "preview", iteration_cap());
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
@@ -113,7 +114,8 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
 
 LevelStepper::Outcome LevelStepper::step_once(double t) {
     const VecX before = x_;
-    const NewtonSummary summary = step(t, settings_.time_step, settings_.tolerance, x_, is_last_ ? "final" : "refine");
+    const NewtonSummary summary =
+        step(t, settings_.time_step, settings_.tolerance, x_, is_last_ ? "final" : "refine", iteration_cap());
     if (summary.end == NewtonEnd::cancelled)
         x_ = before;
     return outcome_of(summary);
@@ -125,7 +127,9 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
     while (progress_.settle_step < settings_.max_settle_steps) {
         const VecX before = x_;
         const double h = progress_.settle_time_step;
-        const NewtonSummary summary = step(t, h, progress_.settle_tolerance, x_, "settle");
+        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short.
+        const int most = std::min(iteration_cap(), preview_iteration_cap);
+        const NewtonSummary summary = step(t, h, progress_.settle_tolerance, x_, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
@@ -140,7 +144,7 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
             progress_.settle_tolerance *= 0.1;
         if (summary.end == NewtonEnd::stalled)
             progress_.settle_time_step = std::max(0.1 * h, 1e-3 * settings_.time_step);
-        else if (summary.iterations <= iteration_cap() / 2)
+        else if (summary.iterations <= most / 2)
             progress_.settle_time_step = std::min(2 * h, largest_growth * settings_.time_step);
         save_checkpoint(t);
     }

@@ -35,7 +35,8 @@ public:
     const VecX& unknowns() const { return x_; }
 
 private:
-    NewtonSummary step(double t, double h, double tolerance, const VecX& anchor, const char* phase);
+    NewtonSummary step(double t, double h, double tolerance, const VecX& anchor, const char* phase,
+                       int most_iterations);
     void save_checkpoint(double t);
     int iteration_cap() const;
 
