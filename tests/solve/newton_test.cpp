@@ -29,6 +29,8 @@ public:
             x[3 * v] = v;
         return x;
     }
+    /// Makes the Hessian this many times stiffer than it is.
+    void exaggerate(double factor) { exaggeration_ = factor; }
     void set_target(const Vec3& end) { targets_.tail<3>() = end; }
 
     double value(const VecX& x) override {
@@ -48,7 +50,7 @@ public:
             gradient.segment<3>(3 * v + 3) += pull;
         }
     }
-    void assemble(const VecX& x, NewtonSystem& system, bool project) override {
+    void assemble(const VecX& x, NewtonSystem& system, bool /*project*/) override {
         system.begin({});
         for (int v = 0; v + 1 < n_; ++v) {
             const Vec3 edge = x.segment<3>(3 * v + 3) - x.segment<3>(3 * v);
@@ -59,6 +61,7 @@ public:
             Eigen::Matrix<double, 6, 6> element;
             element << k, -k, -k, k;
             element += 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
+            element *= exaggeration_;
             system.add(ends, element);
         }
     }
@@ -79,6 +82,7 @@ public:
 private:
     int n_;
     double wall_;
+    double exaggeration_ = 1;
     VecX targets_;
     NewtonSystem system_;
 };
@@ -94,6 +98,25 @@ TEST(Newton, FollowsAPrescribedEndAndSharesTheStretch) {
     EXPECT_EQ(summary.remaining, 0);
     for (int v = 0; v < 6; ++v)
         EXPECT_NEAR(x[3 * v], 1.5 * v, 1e-4);
+}
+
+TEST(Newton, LengthensStepsOfAHessianThatIsTooStiff) {
+    SpringChain chain(6);
+    chain.exaggerate(8);
+    chain.set_target(Vec3(5, 0, 0));
+    VecX x = chain.rest();
+    x[6] += 0.2;
+    SparseCholesky cholesky;
+    Context context;
+    double longest = 0;
+    const NewtonSummary summary =
+        minimize(chain, cholesky, x, {}, context,
+                 [&](const NewtonIteration& iteration) { longest = std::max(longest, iteration.step_length); });
+    EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
+    EXPECT_GE(longest, 4);
+    EXPECT_LE(summary.iterations, 15); // full steps alone would leave 7/8 of the error each time
+    for (int v = 0; v < 6; ++v)
+        EXPECT_NEAR(x[3 * v], v, 1e-3);
 }
 
 TEST(Newton, TakesNoStepAtRest) {

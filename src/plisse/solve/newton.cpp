@@ -168,7 +168,7 @@ private:
             trial_value_ = evaluate(trial_);
             const double trial_merit = trial_value_ + penalty_.value() * (1 - alpha);
             if (trial_merit <= merit + options_.sufficient_decrease * alpha * merit_slope + noise)
-                return alpha;
+                return alpha == 1 && penalty_.share == 0 ? extended(direction) : alpha;
             // Contact that begins on the way is not in the model that set the weight: it is raised to what this takes.
             if (penalty_.share > 0 && halving >= most_script_halvings && std::isfinite(trial_value_)) {
                 penalty_.weight = std::max(penalty_.weight, 2 * (trial_value_ - value_) / (penalty_.share * alpha));
@@ -176,6 +176,30 @@ private:
             }
         }
         return 0;
+    }
+
+    /// Where a full step has lowered the value by clearly more than the model said, H is too stiff along it: projection
+    /// makes it so where the shell is about to buckle. The step is then doubled for as long as that pays.
+    double extended(const Direction& direction) {
+        double alpha = 1;
+        if (value_ - trial_value_ < stiff_ratio * 0.5 * std::abs(direction.slope) + 1e3 * objective_.round_off())
+            return alpha;
+        while (alpha < longest_step) {
+            const double feasible = objective_.max_step(x_, 2 * alpha * direction.d);
+            const double next = 2 * alpha * feasible;
+            if (next <= alpha)
+                break;
+            const VecX further = x_ + next * direction.d;
+            const double further_value = evaluate(further);
+            if (!(further_value < trial_value_))
+                break;
+            alpha = next;
+            trial_ = further;
+            trial_value_ = further_value;
+            if (feasible < 1)
+                break;
+        }
+        return alpha;
     }
 
     void accept(const VecX& u, double alpha) {
@@ -186,7 +210,7 @@ private:
             value_ = evaluate(x_);
         }
         penalty_.share *= 1 - alpha;
-        full_step_ = alpha == 1;
+        full_step_ = alpha >= 1;
         ++summary_.iterations;
         objective_.on_accepted(x_);
     }
@@ -203,6 +227,8 @@ private:
     int short_steps_ = 0;
     static constexpr int most_exact_wait = 8;
     static constexpr int most_script_halvings = 2;
+    static constexpr double stiff_ratio = 1.5;
+    static constexpr double longest_step = 64;
     bool full_step_ = false;
     int exact_wait_ = 0, exact_failures_ = 0;
 };

@@ -30,7 +30,7 @@ struct NewtonIteration {
     int iteration = 0;
     double value = 0;       ///< after the step
     double step_norm = 0;   ///< largest nodal |d_i|, m
-    double step_length = 0; ///< alpha
+    double step_length = 0; ///< alpha; above 1 where H was too stiff along the step
     double remaining = 0;   ///< largest distance of a prescribed vertex to its target before the step, m
 };
 
