@@ -5,6 +5,7 @@
 #include <plisse/base/error.h>
 #include <plisse/scene/json_cursor.h>
 
+#include "bench_command.h"
 #include "check_command.h"
 #include "exit_status.h"
 #include "hierarchy_command.h"
@@ -41,6 +42,7 @@ void add_commands(CLI::App& app) {
     plisse::add_render_command(app);
     plisse::add_report_command(app);
     plisse::add_schema_command(app);
+    plisse::add_bench_command(app);
     plisse::add_later_commands(app);
 }
 

@@ -109,9 +109,9 @@ TEST(Newton, LengthensStepsOfAHessianThatIsTooStiff) {
     SparseCholesky cholesky;
     Context context;
     double longest = 0;
-    const NewtonSummary summary =
-        minimize(chain, cholesky, x, {}, context,
-                 [&](const NewtonIteration& iteration) { longest = std::max(longest, iteration.step_length); });
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context, [&](const NewtonIteration& iteration) {
+        longest = std::max(longest, iteration.step_length);
+    });
     EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
     EXPECT_GE(longest, 4);
     EXPECT_LE(summary.iterations, 15); // full steps alone would leave 7/8 of the error each time

@@ -1,0 +1,76 @@
+#include "bench_scenes.h"
+
+#include <algorithm>
+
+#include <plisse/base/error.h>
+#include <plisse/scene/json_cursor.h>
+#include <plisse/scene/read_scene.h>
+
+namespace plisse {
+
+namespace {
+
+struct BenchScene {
+    const char* name;
+    const char* text;
+    double edge_length, quick_edge_length; ///< m
+};
+
+constexpr BenchScene scenes[] = {
+    {"can", R"({
+  // The wall of a thin aluminium can, its rim pushed down and a little aside.
+  "plisse": 1,
+  "name": "can",
+  "bodies": [{"name": "can", "mesh": {"generate": "cylinder", "radius": 0.033, "height": 0.1, "seed": 1},
+    "material": {"density": 2700, "youngs_modulus": 7e10, "poisson_ratio": 0.33, "thickness": 1e-4}}],
+  "handles": [
+    {"name": "foot", "body": "can", "select": {"box": [[-1, -0.06, -1], [1, -0.0499, 1]]}},
+    {"name": "rim", "body": "can", "select": {"box": [[-1, 0.0499, -1], [1, 0.06, 1]]},
+     "motion": [{"t": 0}, {"t": 1, "translate": [0.001, -0.02, 0]}]}],
+  "gravity": [0, 0, 0],
+  "contact": {"distance": 5e-4},
+  "hierarchy": {"levels": 3, "coarsest_vertices": 400},
+  "solve": {"time_step": 0.05, "duration": 1}
+})",
+     0.0016, 0.0025},
+    {"twist", R"({
+  // A cloth whose ends turn against each other.
+  "plisse": 1,
+  "name": "twist",
+  "bodies": [{"name": "cloth", "mesh": {"generate": "sheet", "size": [1, 1], "seed": 1},
+    "material": {"density": 472.6, "youngs_modulus": 82.1e3, "poisson_ratio": 0.243, "thickness": 3.18e-4,
+                 "bending_scale": 3}}],
+  "handles": [
+    {"name": "left", "body": "cloth", "select": {"box": [[-0.501, -1, -1], [-0.499, 1, 1]]},
+     "motion": [{"t": 0}, {"t": 2, "rotate_deg": [144, 0, 0]}]},
+    {"name": "right", "body": "cloth", "select": {"box": [[0.499, -1, -1], [0.501, 1, 1]]},
+     "motion": [{"t": 0}, {"t": 2, "rotate_deg": [-144, 0, 0]}]}],
+  "gravity": [0, 0, 0],
+  "contact": {"distance": 1e-3},
+  "hierarchy": {"levels": 3, "coarsest_vertices": 300},
+  "solve": {"time_step": 0.05, "duration": 2}
+})",
+     0.014, 0.025},
+};
+
+} // namespace
+
+std::vector<std::string> bench_names() {
+    std::vector<std::string> names;
+    for (const BenchScene& scene : scenes)
+        names.push_back(scene.name);
+    return names;
+}
+
+Scene bench_scene(const std::string& name, bool quick) {
+    const auto* found =
+        std::find_if(std::begin(scenes), std::end(scenes), [&](const BenchScene& scene) { return scene.name == name; });
+    if (found == std::end(scenes))
+        throw InputError("bench", "there is no benchmark \"" + name + "\"",
+                         "the nearest is `plisse bench " + nearest_name(name, bench_names()) + "`");
+    Scene scene = parse_scene("the benchmark " + name, found->text, {});
+    scene.bodies.front().mesh.generator.edge_length = quick ? found->quick_edge_length : found->edge_length;
+    return scene;
+}
+
+} // namespace plisse
