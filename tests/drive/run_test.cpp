@@ -174,6 +174,40 @@ TEST(Run, StaysAtRestWithoutLoads) {
     }
 }
 
+TEST(Run, TakesATimelineOfNoLength) {
+    for (Method method : {Method::progressive, Method::direct}) {
+        Model model = small_press();
+        model.solve.method = method;
+        model.solve.duration = 0;
+        model.solve.settle = false;
+        Witness witness;
+        const RunResult result = run_to_end(model, witness);
+        EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+        EXPECT_LT((result.positions - model.mesh.positions).cwiseAbs().maxCoeff(), 1e-9);
+    }
+}
+
+/// Every fraction a run shows.
+struct ProgressWitness : Context {
+    void on_progress(const Progress& progress) override { fractions.push_back(progress.fraction); }
+    std::vector<double> fractions;
+};
+
+TEST(Run, ShowsProgressThatOnlyGrows) {
+    for (Method method : {Method::progressive, Method::direct}) {
+        Model model = small_press();
+        model.solve.method = method;
+        Witness witness;
+        ProgressWitness context;
+        run(model, {}, witness, context);
+        ASSERT_GT(context.fractions.size(), 10U);
+        EXPECT_TRUE(std::is_sorted(context.fractions.begin(), context.fractions.end()));
+        EXPECT_GE(context.fractions.front(), 0);
+        EXPECT_LE(context.fractions.back(), 1);
+        EXPECT_GT(context.fractions.back(), 0.6);
+    }
+}
+
 TEST(Run, NeverCallsACutStepConverged) {
     Model model = small_press();
     model.solve.method = Method::direct;

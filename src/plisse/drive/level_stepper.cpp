@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <plisse/drive/run_fraction.h>
+
 namespace plisse {
 
 namespace {
@@ -48,6 +50,14 @@ int LevelStepper::iteration_cap() const {
     return settings_.max_iterations_per_step.value_or(is_last_ ? final_iteration_cap : preview_iteration_cap);
 }
 
+double LevelStepper::fraction(std::string_view phase) const {
+    const RunFraction run(discretization_.model(), discretization_.finest() + 1);
+    if (phase != "preview")
+        return run.in_settling(level_, progress_.settle_step);
+    return run.in_timeline(progress_.step /
+                           std::max(1.0, double(timeline_steps(settings_.duration, settings_.time_step))));
+}
+
 NewtonSummary LevelStepper::step(double t, double h, double tolerance, const VecX& anchor, const char* phase,
                                  int most_iterations) {
     // Forgetting the ordering here makes a resumed run take the same steps, to the bit, as an uninterrupted one.
@@ -64,8 +74,7 @@ NewtonSummary LevelStepper::step(double t, double h, double tolerance, const Vec
     shown.time = t;
     shown.duration = settings_.duration;
     shown.step = report.steps + 1;
-    const double steps = timeline_steps(settings_.duration, settings_.time_step);
-    shown.fraction = steps > 0 ? std::min(1.0, progress_.step / steps) : 1.0;
+    shown.fraction = fraction(phase);
     const NewtonSummary summary =
         minimize(problem_, cholesky_, x_, options, log_.context(), [&](const NewtonIteration& iteration) {
             shown.iteration = iteration.iteration;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include <plisse/drive/run_log.h>
 #include <plisse/solve/newton.h>
 
@@ -39,6 +41,7 @@ private:
                        int most_iterations);
     void save_checkpoint(double t);
     int iteration_cap() const;
+    double fraction(std::string_view phase) const;
 
     const Discretization& discretization_;
     const SolveSettings& settings_;

@@ -8,6 +8,7 @@
 #include <plisse/base/parallel.h>
 #include <plisse/drive/batch_motion.h>
 #include <plisse/drive/patch_relaxation.h>
+#include <plisse/drive/run_fraction.h>
 #include <plisse/drive/safe_perturbation.h>
 
 namespace plisse {
@@ -111,6 +112,7 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
     shown.phase = "refine";
     shown.time = t;
     shown.duration = discretization.model().solve.duration;
+    const RunFraction run(discretization.model(), discretization.finest() + 1);
     for (const std::vector<int>& batch : coarse.batches) {
         if (context.cancelled()) {
             result.cancelled = true;
@@ -126,7 +128,7 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
             return result;
         }
         ++shown.step;
-        shown.fraction = shown.step / static_cast<double>(coarse.batches.size());
+        shown.fraction = run.in_refinement(from + 1, shown.step / static_cast<double>(coarse.batches.size()));
         context.on_progress(shown);
     }
     result.positions = mesh.level_positions(from + 1);
