@@ -42,6 +42,12 @@ SparseCholesky::State::State() {
     common.method[0].ordering = CHOLMOD_GIVEN;
     common.postorder = true;
     common.print = 0;
+    // Supernodes merged a little more eagerly than by default: shells have many of a dozen columns.
+    common.nrelax[0] = 8;
+    common.nrelax[1] = 24;
+    common.nrelax[2] = 64;
+    common.zrelax[1] = 0.2;
+    common.zrelax[2] = 0.1;
     common.error_handler = nullptr;
     common.quick_return_if_not_posdef = true;
 }

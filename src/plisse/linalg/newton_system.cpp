@@ -123,10 +123,11 @@ void NewtonSystem::set_pattern(const std::vector<std::uint64_t>& keys) {
 }
 
 int NewtonSystem::find_block(int row, int column) const {
-    const auto first = block_rows_.begin() + column_starts_[at(column)];
-    const auto last = block_rows_.begin() + column_starts_[at(column) + 1];
-    const auto found = std::lower_bound(first, last, row);
-    return found != last && *found == row ? static_cast<int>(found - block_rows_.begin()) : -1;
+    const int begin = column_starts_[at(column)], end = column_starts_[at(column) + 1];
+    int found = begin; // counted without branches: columns are short, and a search would mispredict
+    for (int k = begin; k < end; ++k)
+        found += block_rows_[at(k)] < row;
+    return found < end && block_rows_[at(found)] == row ? found : -1;
 }
 
 double* NewtonSystem::block_values(int column, int block) {
@@ -153,12 +154,16 @@ void NewtonSystem::add_block(int i, int j, const Mat3& block) {
     }
     const int k = find_block(row, column);
     assert(k >= 0 && "block outside the pattern: pass its pair to begin()");
-    double* values = block_values(column, k);
-    const int stride = column_stride(column);
+    Eigen::Map<Mat3, 0, Eigen::OuterStride<>> values(block_values(column, k),
+                                                     Eigen::OuterStride<>(column_stride(column)));
+    if (!special) {
+        values += block;
+        return;
+    }
     for (int b = 0; b < 3; ++b)
         for (int a = 0; a < 3; ++a)
-            if (!special || !(prescribed_[at(3 * i + a)] || prescribed_[at(3 * j + b)]))
-                values[b * stride + a] += block(a, b);
+            if (!(prescribed_[at(3 * i + a)] || prescribed_[at(3 * j + b)]))
+                values(a, b) += block(a, b);
 }
 
 Mat3 NewtonSystem::block(int i, int j) const {
