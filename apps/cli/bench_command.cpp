@@ -58,7 +58,8 @@ struct Contestant {
 
 Contestant compete(const std::string& label, const Model& model, Context& context) {
     context.on_message(label);
-    Contestant contestant{label};
+    Contestant contestant;
+    contestant.label = label;
     LastStates states;
     const Stopwatch watch;
     RunResult result = run(model, {}, states, context);

@@ -53,6 +53,7 @@ TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
     expect_unusable({"run", "scene.json", "-o", "x", "--threads", "many"}, "--threads");
     expect_unusable({"run", "scene.json", "-o", "x", "--progress", "loud"}, "--progress");
     expect_unusable({"studio"}, "not supported in this version");
+    expect_unusable({"bench", "cam"}, "plisse bench can");
     expect_unusable({"export", "x", "--format", "usd"}, "not supported in this version");
 }
 
@@ -60,7 +61,7 @@ TEST_F(Cli, HelpAndVersionEndInZero) {
     EXPECT_EQ(run({"--version"}).code, 0);
     EXPECT_NE(run({"--help"}).out.find("hierarchy"), std::string::npos);
     for (const char* command :
-         {"run", "check", "hierarchy", "prolong", "render", "report", "schema", "studio", "export"}) {
+         {"run", "check", "hierarchy", "prolong", "render", "report", "schema", "bench", "studio", "export"}) {
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.code, 0) << command;
         EXPECT_NE(outcome.out.find("Usage"), std::string::npos) << command;
