@@ -56,6 +56,7 @@ struct Contestant {
     bool converged() const { return report.status == RunStatus::converged && report.intersecting_pairs == 0; }
 };
 
+/// Runs the model. An interruption ends the whole benchmark.
 Contestant compete(const std::string& label, const Model& model, Context& context) {
     context.on_message(label);
     Contestant contestant;
@@ -63,6 +64,8 @@ Contestant compete(const std::string& label, const Model& model, Context& contex
     LastStates states;
     const Stopwatch watch;
     RunResult result = run(model, {}, states, context);
+    if (context.cancelled())
+        throw ExitStatus{ExitCode::interrupted};
     contestant.seconds = watch.seconds();
     contestant.report = std::move(result.report);
     contestant.result = std::move(result.positions);
@@ -191,8 +194,6 @@ void run_bench(const BenchArguments& arguments) {
     const InterruptGuard guard(console);
     const Contest contest = hold_contest(build_model(scene, console), console);
     console.clear_bar();
-    if (console.cancelled())
-        throw ExitStatus{ExitCode::interrupted};
     print_table(contest);
     const Contestant* progressive = fastest_of(contest.progressive);
     const Contestant* direct = fastest_of(contest.direct);
