@@ -15,14 +15,8 @@ namespace {
 
 /// A flat strip or plate in the xz-plane, free of gravity, to be solved directly.
 Model flat_model(const GeneratorOptions& sheet, const Material& material) {
-    Model model;
-    model.name = "plate";
-    model.mesh.positions.resize(3, 0);
-    Body body;
-    body.name = "plate";
-    body.material = material;
-    append_part(model, generate_mesh(sheet), Vec3::Zero(), body.vertices, body.faces);
-    model.bodies.push_back(body);
+    Model model = empty_model("plate");
+    add_body(model, "plate", material, generate_mesh(sheet));
     model.gravity = Track<Vec3>(Vec3::Zero());
     model.contact.distance = 1e-3 * material.thickness;
     model.contact.self = false;

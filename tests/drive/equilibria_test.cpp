@@ -39,14 +39,8 @@ void expect_one_equilibrium(const Model& model, const RunResult& progressive, co
 
 /// A sheet held level by one whole edge, which falls and hangs.
 Model hung_sheet() {
-    Model model;
-    model.name = "hung sheet";
-    model.mesh.positions.resize(3, 0);
-    Body sheet;
-    sheet.name = "sheet";
-    sheet.material = {400, 2e6, 0.3, 1e-3, 1};
-    append_part(model, sheet_mesh(0.4, 0.025), Vec3::Zero(), sheet.vertices, sheet.faces);
-    model.bodies.push_back(sheet);
+    Model model = empty_model("hung sheet");
+    add_body(model, "sheet", {400, 2e6, 0.3, 1e-3, 1}, sheet_mesh(0.4, 0.025));
     Handle edge;
     edge.name = "edge";
     for (int v = 0; v < model.mesh.vertex_count(); ++v)
@@ -71,12 +65,8 @@ struct Inflation {
 Inflation inflated_sphere(double edge_length) {
     Inflation inflation;
     Model& model = inflation.model;
-    model.name = "inflated sphere";
-    model.mesh.positions.resize(3, 0);
-    Body ball;
-    ball.name = "ball";
-    ball.material = {1000, 1e6, 0.3, 1e-3, 1};
-    append_part(model, sphere_mesh(0.1, edge_length), Vec3::Zero(), ball.vertices, ball.faces);
+    model = empty_model("inflated sphere");
+    Body& ball = add_body(model, "ball", {1000, 1e6, 0.3, 1e-3, 1}, sphere_mesh(0.1, edge_length));
     double area = 0, volume = 0;
     for (const Face& f : model.mesh.faces) {
         const Vec3 a = model.mesh.positions.col(f[0]), b = model.mesh.positions.col(f[1]),
@@ -90,7 +80,6 @@ Inflation inflated_sphere(double edge_length) {
     const double balance = 0.56107; // p R / (mu t) at 1.1 for a Poisson ratio of 0.3 (VALIDATION.md, P1)
     const double pressure = balance * lame.mu * ball.material.thickness / inflation.radius;
     ball.pressure.keys = {{0, 0.0}, {1, pressure}};
-    model.bodies.push_back(ball);
     model.gravity = Track<Vec3>(Vec3::Zero());
     model.contact.distance = 1e-3;
     model.hierarchy = {3, 60};

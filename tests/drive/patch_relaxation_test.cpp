@@ -15,16 +15,9 @@ constexpr double contact_distance = 2e-3;
 
 /// Two sheets, far apart at rest.
 Model two_sheets() {
-    Model model;
-    model.name = "two sheets";
-    model.mesh.positions.resize(3, 0);
-    for (int i = 0; i < 2; ++i) {
-        Body sheet;
-        sheet.name = i == 0 ? "lower" : "upper";
-        append_part(model, sheet_mesh(0.3, 0.03, static_cast<std::uint64_t>(i) + 1), Vec3(0, 0.1 * i, 0),
-                    sheet.vertices, sheet.faces);
-        model.bodies.push_back(sheet);
-    }
+    Model model = empty_model("two sheets");
+    add_body(model, "lower", {}, sheet_mesh(0.3, 0.03, 1));
+    add_body(model, "upper", {}, sheet_mesh(0.3, 0.03, 2), Vec3(0, 0.1, 0));
     model.contact.distance = contact_distance;
     model.hierarchy = {2, 40};
     return model;

@@ -154,13 +154,8 @@ TEST(Run, ResumesToTheSameBits) {
 
 TEST(Run, StaysAtRestWithoutLoads) {
     for (Method method : {Method::progressive, Method::direct}) {
-        Model model;
-        model.name = "rest";
-        model.mesh.positions.resize(3, 0);
-        Body ball;
-        ball.name = "ball";
-        append_part(model, sphere_mesh(0.1, 0.03), Vec3::Zero(), ball.vertices, ball.faces);
-        model.bodies.push_back(ball);
+        Model model = empty_model("rest");
+        add_body(model, "ball", {}, sphere_mesh(0.1, 0.03));
         model.gravity = Track<Vec3>(Vec3::Zero());
         model.contact.distance = 0.05; // far above the edges
         model.hierarchy = {3, 60};

@@ -17,6 +17,25 @@ inline void append_part(Model& model, const TriangleMesh& part, const Vec3& shif
     model.start = model.mesh.positions;
 }
 
+/// A model with nothing in it yet.
+inline Model empty_model(const char* name) {
+    Model model;
+    model.name = name;
+    model.mesh.positions.resize(3, 0);
+    return model;
+}
+
+/// The body is valid until the next one is added.
+inline Body& add_body(Model& model, const char* name, const Material& material, const TriangleMesh& mesh,
+                      const Vec3& shift = Vec3::Zero()) {
+    Body body;
+    body.name = name;
+    body.material = material;
+    append_part(model, mesh, shift, body.vertices, body.faces);
+    model.bodies.push_back(body);
+    return model.bodies.back();
+}
+
 inline TriangleMesh sheet_mesh(double size, double edge_length, std::uint64_t seed = 1) {
     GeneratorOptions options;
     options.shape = GeneratorShape::sheet;
@@ -36,13 +55,8 @@ inline TriangleMesh sphere_mesh(double radius, double edge_length) {
 
 /// A cloth above a ball, its crown kept from sliding, on three levels.
 inline Model small_drape() {
-    Model model;
-    model.name = "small drape";
-    model.mesh.positions.resize(3, 0);
-    Body cloth;
-    cloth.name = "cloth";
-    append_part(model, sheet_mesh(0.6, 0.04), Vec3(0, 0.17, 0), cloth.vertices, cloth.faces);
-    model.bodies.push_back(cloth);
+    Model model = empty_model("small drape");
+    const Body& cloth = add_body(model, "cloth", {}, sheet_mesh(0.6, 0.04), Vec3(0, 0.17, 0));
     Obstacle ball;
     ball.name = "ball";
     append_part(model, sphere_mesh(0.15, 0.05), Vec3::Zero(), ball.vertices, ball.faces);
@@ -64,14 +78,8 @@ inline Model small_drape() {
 
 /// A soft closed ball pressed between two plates that meet their script.
 inline Model small_press() {
-    Model model;
-    model.name = "small press";
-    model.mesh.positions.resize(3, 0);
-    Body ball;
-    ball.name = "ball";
-    ball.material = {1000, 1e6, 0.3, 1e-3, 1};
-    append_part(model, sphere_mesh(0.1, 0.03), Vec3::Zero(), ball.vertices, ball.faces);
-    model.bodies.push_back(ball);
+    Model model = empty_model("small press");
+    add_body(model, "ball", {1000, 1e6, 0.3, 1e-3, 1}, sphere_mesh(0.1, 0.03));
     GeneratorOptions box;
     box.shape = GeneratorShape::box;
     box.size = Vec3(0.3, 0.02, 0.3);

@@ -13,15 +13,8 @@ namespace {
 
 /// A curved, pressurised, loaded body near a ball, so that every term of F_l acts.
 Model loaded_model(BendingOn bending_on, ProlongationOperator kind) {
-    Model model;
-    model.name = "loaded";
-    model.mesh.positions.resize(3, 0);
-    Body body;
-    body.name = "body";
-    body.material = {1000, 1e6, 0.3, 2e-3, 1};
-    body.pressure = Track<double>(200);
-    append_part(model, sphere_mesh(0.1, 0.03), Vec3::Zero(), body.vertices, body.faces);
-    model.bodies.push_back(body);
+    Model model = empty_model("loaded");
+    add_body(model, "body", {1000, 1e6, 0.3, 2e-3, 1}, sphere_mesh(0.1, 0.03)).pressure = Track<double>(200);
     Obstacle ball;
     ball.name = "ball";
     append_part(model, sphere_mesh(0.1, 0.04), Vec3(0, -0.205, 0), ball.vertices, ball.faces);
