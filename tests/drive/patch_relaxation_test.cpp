@@ -63,8 +63,9 @@ TEST(PatchRelaxation, OpensTheGapAroundAVertexAndHoldsAllOthers) {
     relax_patch(mesh, patch, wanted, context);
     EXPECT_GT(mesh.position(free).y(), wanted);
     for (int id : level.vertex_ids)
-        if (id != free)
+        if (id != free) {
             EXPECT_EQ(mesh.position(id), Vec3(before.col(id)));
+        }
     EXPECT_TRUE(intersecting_pairs(mesh.level_positions(0), level.faces, {}).empty());
 }
 

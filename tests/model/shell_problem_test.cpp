@@ -42,8 +42,9 @@ TEST_P(ProxyDerivatives, GradientMatchesCentralDifferences) {
         if (!problem.system().prescribed()[static_cast<std::size_t>(i)])
             x[i] += random.uniform(-1e-3, 1e-3) - (i % 3 == 1 ? 3.5e-3 : 0); // down, into contact
     ASSERT_TRUE(std::isfinite(problem.value(x)));
-    if (level == discretization.finest())
+    if (level == discretization.finest()) {
         EXPECT_GT(problem.active_contacts(x), 0);
+    }
     VecX gradient;
     problem.gradient(x, gradient);
     for (int direction = 0; direction < 20; ++direction) {
