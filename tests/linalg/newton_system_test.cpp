@@ -112,17 +112,4 @@ TEST(NewtonSystem, TakesExtraPairsAndForgetsThem) {
     EXPECT_EQ(system.block_rows().size(), base_blocks);
 }
 
-TEST(SparseCholesky, SaysWhenTheMatrixIsIndefinite) {
-    NewtonSystem system(std::vector<std::uint8_t>(6, 0), std::vector<Edge>{{0, 1}});
-    system.begin({});
-    system.add_block(0, 0, Mat3::Identity());
-    system.add_block(1, 1, -Mat3::Identity());
-    SparseCholesky cholesky;
-    EXPECT_FALSE(cholesky.factorize(system));
-    EXPECT_TRUE(cholesky.factorize(system, 2.0));
-    const VecX x = cholesky.solve(VecX::Ones(6));
-    EXPECT_NEAR(x[0], 1.0 / 3, 1e-14);
-    EXPECT_NEAR(x[5], 1.0, 1e-14);
-}
-
 } // namespace

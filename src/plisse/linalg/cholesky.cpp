@@ -1,182 +1,318 @@
 #include <plisse/linalg/cholesky.h>
 
-#include <cholmod.h>
-#include <metis.h>
-#include <omp.h>
-
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cassert>
-#include <cstring>
-#include <stdexcept>
 
-extern "C" void openblas_set_num_threads(int count);
+#include <Eigen/Cholesky>
+#include <cblas.h>
+
+#include <plisse/base/parallel.h>
 
 namespace plisse {
 
-struct SparseCholesky::State {
-    cholmod_common common;
-    cholmod_sparse matrix{};
-    cholmod_factor* factor = nullptr;
-    cholmod_dense* solution = nullptr;
-    cholmod_dense* work_y = nullptr;
-    cholmod_dense* work_e = nullptr;
-    std::vector<int> column_pointers, row_indices, order;
-    int pattern_version = -1;
-    int ordering_count = 0;
-    double ordered_fill = 0;
+namespace {
 
-    State();
-    ~State();
-    void expand_pattern(const NewtonSystem& system);
-    void order_vertices(const NewtonSystem& system);
-    void analyze(const NewtonSystem& system);
-};
+using MatX = Eigen::MatrixXd;
+using MatrixMap = Eigen::Map<MatX, 0, Eigen::OuterStride<>>;
 
-SparseCholesky::State::State() {
-    // Debian's CHOLMOD opens OpenMP teams of its own and OpenBLAS threads below them: both are slower here than one
-    // thread, and their reductions would make the bits depend on the machine's load.
-    omp_set_max_active_levels(0);
-    openblas_set_num_threads(1);
-    cholmod_start(&common);
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    common.postorder = true;
-    common.print = 0;
-    // Supernodes merged a little more eagerly than by default: shells have many of a dozen columns.
-    common.nrelax[0] = 8;
-    common.nrelax[1] = 24;
-    common.nrelax[2] = 64;
-    common.zrelax[1] = 0.2;
-    common.zrelax[2] = 0.1;
-    common.error_handler = nullptr;
-    common.quick_return_if_not_posdef = true;
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
 }
 
-SparseCholesky::State::~State() {
-    cholmod_free_dense(&solution, &common);
-    cholmod_free_dense(&work_y, &common);
-    cholmod_free_dense(&work_e, &common);
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
+std::size_t triangle_room(int size) {
+    constexpr std::size_t alignment = 8; // whole cache lines, so that the bits cannot depend on where a front lies
+    return (at(size) * at(size) + alignment - 1) / alignment * alignment;
 }
 
-void SparseCholesky::State::expand_pattern(const NewtonSystem& system) {
-    const auto& starts = system.column_starts();
-    const auto& rows = system.block_rows();
-    column_pointers.assign(1, 0);
-    row_indices.clear();
-    row_indices.reserve(9 * rows.size());
-    for (std::size_t c = 0; c + 1 < starts.size(); ++c)
-        for (int b = 0; b < 3; ++b) {
-            for (int k = starts[c]; k < starts[c + 1]; ++k)
-                for (int a = 0; a < 3; ++a)
-                    row_indices.push_back(3 * rows[static_cast<std::size_t>(k)] + a);
-            column_pointers.push_back(static_cast<int>(row_indices.size()));
-        }
-    const auto n = static_cast<std::size_t>(3 * system.row_count());
-    matrix.nrow = matrix.ncol = n;
-    matrix.nzmax = row_indices.size();
-    matrix.p = column_pointers.data();
-    matrix.i = row_indices.data();
-    matrix.stype = -1;
-    matrix.itype = CHOLMOD_INT;
-    matrix.xtype = CHOLMOD_REAL;
-    matrix.dtype = CHOLMOD_DOUBLE;
-    matrix.sorted = true;
-    matrix.packed = true;
-}
+} // namespace
 
-void SparseCholesky::State::order_vertices(const NewtonSystem& system) {
-    const auto n = static_cast<std::size_t>(system.row_count());
-    std::vector<std::vector<idx_t>> neighbours(n);
-    for (std::size_t c = 0; c < n; ++c)
-        for (int k = system.column_starts()[c] + 1; k < system.column_starts()[c + 1]; ++k) {
-            const int r = system.block_rows()[static_cast<std::size_t>(k)];
-            neighbours[c].push_back(r);
-            neighbours[static_cast<std::size_t>(r)].push_back(static_cast<idx_t>(c));
-        }
-    std::vector<idx_t> starts{0}, adjacent;
-    for (const auto& list : neighbours) {
-        adjacent.insert(adjacent.end(), list.begin(), list.end());
-        starts.push_back(static_cast<idx_t>(adjacent.size()));
-    }
-    std::vector<idx_t> permutation(n), inverse(n);
-    auto count = static_cast<idx_t>(n);
-    if (adjacent.empty())
-        for (std::size_t i = 0; i < n; ++i)
-            permutation[i] = static_cast<idx_t>(i);
-    else if (METIS_NodeND(&count, starts.data(), adjacent.data(), nullptr, nullptr, permutation.data(),
-                          inverse.data()) != METIS_OK)
-        throw std::runtime_error("METIS could not order the matrix");
-    order.clear();
-    for (idx_t row : permutation)
-        for (int a = 0; a < 3; ++a)
-            order.push_back(3 * static_cast<int>(row) + a);
-    ++ordering_count;
+SparseCholesky::SparseCholesky() {
+    openblas_set_num_threads(1); // fronts are worked on at a time instead; a team's sums would depend on its size
 }
-
-void SparseCholesky::State::analyze(const NewtonSystem& system) {
-    expand_pattern(system);
-    const auto analyze_ordered = [&] {
-        cholmod_free_factor(&factor, &common);
-        factor = cholmod_analyze_p(&matrix, order.data(), nullptr, 0, &common);
-        if (!factor)
-            throw std::runtime_error("CHOLMOD could not analyse the matrix (out of memory?)");
-    };
-    constexpr double fill_worth_reordering = 1.4;
-    if (order.size() == matrix.nrow) {
-        analyze_ordered();
-        if (common.lnz <= fill_worth_reordering * ordered_fill)
-            return;
-    }
-    order_vertices(system);
-    analyze_ordered();
-    ordered_fill = common.lnz;
-}
-
-SparseCholesky::SparseCholesky() : state_(std::make_unique<State>()) {}
-SparseCholesky::~SparseCholesky() = default;
 
 bool SparseCholesky::factorize(const NewtonSystem& system, double shift) {
-    State& s = *state_;
-    if (system.row_count() == 0)
-        return true;
-    s.matrix.x = const_cast<double*>(system.values().data()); // CHOLMOD reads it only
-    if (s.pattern_version != system.pattern_version()) {
-        s.analyze(system);
-        s.pattern_version = system.pattern_version();
+    if (pattern_version_ != system.pattern_version()) {
+        analyze(system);
+        pattern_version_ = system.pattern_version();
     }
-    double beta[2] = {shift, 0};
-    if (!cholmod_factorize_p(&s.matrix, beta, nullptr, 0, s.factor, &s.common) && s.common.status != CHOLMOD_NOT_POSDEF)
-        throw std::runtime_error("CHOLMOD could not factorise the matrix (out of memory?)");
-    return s.common.status == CHOLMOD_OK;
+    std::atomic<bool> definite = true;
+    visit_upwards(elimination_.front_count(), [&](int front) {
+        if (!definite)
+            return;
+        assemble(front, system.values(), shift);
+        if (!eliminate(front))
+            definite = false;
+    });
+    return definite;
 }
 
 void SparseCholesky::reset() {
-    state_->order.clear();
-    state_->pattern_version = -1;
+    elimination_ = {};
+    pattern_version_ = -1;
 }
 
 VecX SparseCholesky::solve(const VecX& right_hand_side) {
-    State& s = *state_;
-    if (right_hand_side.size() == 0)
-        return {};
-    cholmod_dense b{};
-    b.nrow = b.d = b.nzmax = static_cast<std::size_t>(right_hand_side.size());
-    b.ncol = 1;
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
-    b.x = const_cast<double*>(right_hand_side.data());
-    if (!cholmod_solve2(CHOLMOD_A, s.factor, &b, nullptr, &s.solution, nullptr, &s.work_y, &s.work_e, &s.common))
-        throw std::runtime_error("CHOLMOD could not solve (out of memory?)");
-    return Eigen::Map<const VecX>(static_cast<const double*>(s.solution->x), right_hand_side.size());
+    const Elimination& e = elimination_;
+    assert(right_hand_side.size() == 3 * e.row_count());
+    VecX x(right_hand_side.size());
+    for (int p = 0; p < e.row_count(); ++p)
+        x.segment<3>(3 * p) = right_hand_side.segment<3>(3 * e.order[at(p)]);
+
+    const auto pivots_of = [&](int f) { return x.segment(3 * e.first_pivot[at(f)], 3 * e.pivot_count(f)); };
+    const auto carried_of = [&](int f) { return carried_.segment(3 * e.reach_starts[at(f)], reach_size(f)); };
+    const auto panel_of = [&](int f) {
+        const int size = front_size(f);
+        return MatrixMap(panels_.data() + panel_starts_[at(f)], size, size - reach_size(f), Eigen::OuterStride<>(size));
+    };
+    visit_upwards(e.front_count(), [&](int f) {
+        auto pivots = pivots_of(f);
+        auto carried = carried_of(f);
+        const int pivot_count = e.pivot_count(f);
+        carried.setZero();
+        for (int c : children_[at(f)]) {
+            const auto place = e.place_of(c);
+            const auto from = carried_of(c);
+            for (std::size_t i = 0; i < place.size(); ++i) {
+                const auto part = from.segment<3>(3 * static_cast<int>(i));
+                if (place[i] < pivot_count)
+                    pivots.segment<3>(3 * place[i]) += part;
+                else
+                    carried.segment<3>(3 * (place[i] - pivot_count)) += part;
+            }
+        }
+        const auto panel = panel_of(f);
+        panel.topRows(panel.cols()).triangularView<Eigen::Lower>().solveInPlace(pivots);
+        carried.noalias() -= panel.bottomRows(carried.size()) * pivots;
+    });
+    visit_downwards(e.front_count(), [&](int f) {
+        auto pivots = pivots_of(f);
+        auto carried = carried_of(f);
+        const auto reach = e.reach_of(f);
+        for (std::size_t i = 0; i < reach.size(); ++i)
+            carried.segment<3>(3 * static_cast<int>(i)) = x.segment<3>(3 * reach[i]);
+        const auto panel = panel_of(f);
+        pivots.noalias() -= panel.bottomRows(carried.size()).transpose() * carried;
+        panel.topRows(panel.cols()).triangularView<Eigen::Lower>().transpose().solveInPlace(pivots);
+    });
+
+    VecX solution(x.size());
+    for (int p = 0; p < e.row_count(); ++p)
+        solution.segment<3>(3 * e.order[at(p)]) = x.segment<3>(3 * p);
+    return solution;
 }
 
-int SparseCholesky::ordering_count() const {
-    return state_->ordering_count;
+int SparseCholesky::reach_size(int front) const {
+    return 3 * static_cast<int>(elimination_.reach_of(front).size());
 }
-double SparseCholesky::factor_nonzeros() const {
-    return state_->common.lnz;
+
+int SparseCholesky::front_size(int front) const {
+    return 3 * elimination_.pivot_count(front) + reach_size(front);
+}
+
+/// Subtrees worth a task of their own. front_count() stands for what is above the roots.
+bool SparseCholesky::is_heavy(int front) const {
+    constexpr double task_microseconds = 300;
+    return front == elimination_.front_count() || elimination_.cost[at(front)] > task_microseconds;
+}
+
+/// Calls visit for the fronts of a subtree, children before parents; those of unlike subtrees possibly at a time.
+template <typename Visit>
+void SparseCholesky::visit_upwards(int front, const Visit& visit) const {
+    if (!is_heavy(front)) {
+        for (int f = elimination_.first_below[at(front)]; f <= front; ++f)
+            visit(f);
+        return;
+    }
+    const auto& children = children_[at(front)];
+    parallel_for(static_cast<int>(children.size()), 1, [&](int c) { visit_upwards(children[at(c)], visit); });
+    if (front < elimination_.front_count())
+        visit(front);
+}
+
+/// The same with parents before children.
+template <typename Visit>
+void SparseCholesky::visit_downwards(int front, const Visit& visit) const {
+    if (!is_heavy(front)) {
+        for (int f = front; f >= elimination_.first_below[at(front)]; --f)
+            visit(f);
+        return;
+    }
+    if (front < elimination_.front_count())
+        visit(front);
+    const auto& children = children_[at(front)];
+    parallel_for(static_cast<int>(children.size()), 1, [&](int c) { visit_downwards(children[at(c)], visit); });
+}
+
+void SparseCholesky::analyze(const NewtonSystem& system) {
+    constexpr double fill_worth_reordering = 1.4;
+    const auto analyze_in = [&](const std::vector<int>& order) {
+        elimination_ = analyze_elimination(system.column_starts(), system.block_rows(), order);
+    };
+    const bool ordered = elimination_.row_count() == system.row_count();
+    if (ordered)
+        analyze_in(std::vector<int>(elimination_.order));
+    if (!ordered || elimination_.factor_entries() > fill_worth_reordering * ordered_fill_) {
+        analyze_in(dissection_order(system.column_starts(), system.block_rows()));
+        ordered_fill_ = elimination_.factor_entries();
+        ++ordering_count_;
+    }
+
+    const int fronts = elimination_.front_count();
+    children_.assign(at(fronts) + 1, {});
+    panel_starts_.assign(1, 0);
+    for (int f = 0; f < fronts; ++f) {
+        const int parent = elimination_.parent[at(f)];
+        children_[at(parent < 0 ? fronts : parent)].push_back(f);
+        panel_starts_.push_back(panel_starts_.back() + at(front_size(f)) * at(3 * elimination_.pivot_count(f)));
+    }
+    panels_.resize(static_cast<Eigen::Index>(panel_starts_.back()));
+    carried_.resize(3 * static_cast<Eigen::Index>(elimination_.reach.size()));
+    place_blocks(system);
+    lay_out_updates();
+}
+
+void SparseCholesky::place_blocks(const NewtonSystem& system) {
+    const Elimination& e = elimination_;
+    std::vector<int> position(e.order.size()), front_of(e.order.size());
+    for (int f = 0; f < e.front_count(); ++f)
+        for (int p = e.first_pivot[at(f)]; p < e.first_pivot[at(f) + 1]; ++p) {
+            position[at(e.order[at(p)])] = p;
+            front_of[at(p)] = f;
+        }
+    const auto row_in_front = [&](int f, int p) {
+        if (p < e.first_pivot[at(f) + 1])
+            return p - e.first_pivot[at(f)];
+        const auto reach = e.reach_of(f);
+        return e.pivot_count(f) + static_cast<int>(std::lower_bound(reach.begin(), reach.end(), p) - reach.begin());
+    };
+    // Counting sort by front: sizes, then starts, then each block at the next place of its front.
+    const auto& starts = system.column_starts();
+    const auto& rows = system.block_rows();
+    const auto for_each_block = [&](const auto& visit) {
+        for (int c = 0; c < e.row_count(); ++c)
+            for (int k = starts[at(c)]; k < starts[at(c) + 1]; ++k)
+                visit(c, k, position[at(c)], position[at(rows[at(k)])]);
+    };
+    placement_starts_.assign(at(e.front_count()) + 1, 0);
+    for_each_block([&](int, int, int a, int b) { ++placement_starts_[at(front_of[at(std::min(a, b))]) + 1]; });
+    for (std::size_t f = 1; f < placement_starts_.size(); ++f)
+        placement_starts_[f] += placement_starts_[f - 1];
+    placements_.resize(rows.size());
+    std::vector<std::size_t> next(placement_starts_.begin(), placement_starts_.end() - 1);
+    for_each_block([&](int c, int k, int a, int b) {
+        const int f = front_of[at(std::min(a, b))];
+        const int start = starts[at(c)];
+        const int column = row_in_front(f, std::min(a, b)), row = row_in_front(f, std::max(a, b));
+        placements_[next[at(f)]++] = {9 * at(start) + 3 * at(k - start), 3 * (starts[at(c) + 1] - start), b < a,
+                                      panel_starts_[at(f)] + 3 * at(column) * at(front_size(f)) + 3 * at(row)};
+    });
+}
+
+/// Gives every front a place for its update in one of two halves of a workspace, in turn by its depth, such that one is
+/// used again as soon as the parent has taken the update over: a front is written while its children, in the other
+/// half, are read, and what lies below those is needed no more. Subtrees that may be visited at a time share nothing.
+void SparseCholesky::lay_out_updates() {
+    const int fronts = elimination_.front_count();
+    struct Room {
+        std::size_t own = 0, other = 0; ///< in the half of the front's own update, and in that of its children's
+    };
+    std::vector<Room> room(at(fronts) + 1);
+    for (int f = 0; f <= fronts; ++f) {
+        Room& mine = room[at(f)];
+        std::size_t before = 0;
+        for (int c : children_[at(f)]) {
+            const Room& theirs = room[at(c)];
+            mine.own = is_heavy(f) ? mine.own + theirs.other : std::max(mine.own, theirs.other);
+            mine.other = std::max(mine.other, before + theirs.own);
+            before += is_heavy(f) ? theirs.own : triangle_room(reach_size(c));
+        }
+        if (f < fronts)
+            mine.own = std::max(mine.own, triangle_room(reach_size(f)));
+    }
+    std::vector<Room> start(at(fronts) + 1);
+    start[at(fronts)] = {0, room[at(fronts)].own};
+    update_starts_.resize(at(fronts));
+    for (int f = fronts; f >= 0; --f) {
+        Room next = start[at(f)];
+        if (f < fronts)
+            update_starts_[at(f)] = next.own;
+        for (int c : children_[at(f)]) {
+            start[at(c)] = {next.other, next.own};
+            next.own += is_heavy(f) ? room[at(c)].other : 0;
+            next.other += is_heavy(f) ? room[at(c)].own : triangle_room(reach_size(c));
+        }
+    }
+    updates_.resize(static_cast<Eigen::Index>(room[at(fronts)].own + room[at(fronts)].other));
+}
+
+/// Gathers a front: the blocks of the system in its pivots' columns, and what its children leave.
+void SparseCholesky::assemble(int front, const std::vector<double>& values, double shift) {
+    const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
+    double* panel = panels_.data() + panel_starts_[at(front)];
+    std::fill_n(panel, at(size) * at(pivots), 0.0);
+    for (std::size_t i = placement_starts_[at(front)]; i < placement_starts_[at(front) + 1]; ++i) {
+        const Placement& placement = placements_[i];
+        const double* source = values.data() + placement.source;
+        const int across = placement.transposed ? 1 : placement.source_stride;
+        const int down = placement.transposed ? placement.source_stride : 1;
+        double* target = panels_.data() + placement.target;
+        for (int b = 0; b < 3; ++b)
+            for (int a = 0; a < 3; ++a)
+                target[b * size + a] = source[b * across + a * down];
+    }
+    for (int p = 0; p < pivots; ++p)
+        panel[at(p) * at(size) + at(p)] += shift;
+    if (children_[at(front)].empty())
+        return;
+    double* update = updates_.data() + update_starts_[at(front)];
+    for (int column = 0; column < reach; ++column)
+        std::fill(update + at(column) * at(reach) + at(column / 3 * 3), update + (at(column) + 1) * at(reach), 0.0);
+    for (int child : children_[at(front)])
+        add_update(child, front);
+}
+
+/// Adds the update of a child to its parent, block by block: the lower triangle, of which the diagonal blocks are
+/// whole.
+void SparseCholesky::add_update(int child, int front) {
+    const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
+    double* panel = panels_.data() + panel_starts_[at(front)];
+    double* update = updates_.data() + update_starts_[at(front)];
+    const double* source = updates_.data() + update_starts_[at(child)];
+    const auto place = elimination_.place_of(child);
+    const std::size_t height = 3 * place.size();
+    for (std::size_t j = 0; j < place.size(); ++j) {
+        const int column = 3 * place[j];
+        const bool pivotal = column < pivots;
+        const int stride = pivotal ? size : reach;
+        const int first_row = pivotal ? 0 : pivots;
+        double* target = (pivotal ? panel : update) + at(column - first_row) * at(stride);
+        for (std::size_t i = j; i < place.size(); ++i) {
+            const double* from = source + 3 * j * height + 3 * i;
+            double* to = target + 3 * place[i] - first_row;
+            for (int b = 0; b < 3; ++b)
+                for (int a = 0; a < 3; ++a)
+                    to[b * stride + a] += from[at(b) * height + at(a)];
+        }
+    }
+}
+
+/// Turns the panel of an assembled front into columns of the factor, and subtracts them from its update.
+bool SparseCholesky::eliminate(int front) {
+    const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
+    double* panel = panels_.data() + panel_starts_[at(front)];
+    MatrixMap diagonal(panel, pivots, pivots, Eigen::OuterStride<>(size));
+    if (Eigen::LLT<Eigen::Ref<MatX>>(diagonal).info() != Eigen::Success)
+        return false;
+    if (reach == 0)
+        return true;
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, reach, pivots, 1, panel, size,
+                panel + pivots, size);
+    const double updated = children_[at(front)].empty() ? 0 : 1; // 0 clears what the memory holds
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, reach, pivots, -1, panel + pivots, size, updated,
+                updates_.data() + update_starts_[at(front)], reach);
+    return true;
 }
 
 } // namespace plisse
