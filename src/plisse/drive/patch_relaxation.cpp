@@ -18,6 +18,7 @@ std::size_t at(int index) {
 
 /// The faces in reach of a patch in numbers of their own.
 struct LocalMesh {
+    Box room; ///< where free vertices may go: all faces within reach of it are there
     std::vector<int> ids; ///< hierarchy id of each local vertex, ascending
     std::vector<Face> faces;
     std::vector<Face> elastic_faces; ///< those with a free corner
@@ -34,9 +35,10 @@ LocalMesh local_mesh(const ExpandingMesh& mesh, std::span<const int> free, doubl
         for (int f : mesh.faces().vertex_faces(v))
             for (int w : mesh.faces().face(f))
                 box.include(mesh.position(w));
-    std::vector<int> near;
-    mesh.grid().query(box.inflated(reach), near);
     LocalMesh local;
+    local.room = box.inflated(std::max(reach, 0.25 * box.diagonal()));
+    std::vector<int> near;
+    mesh.grid().query(local.room.inflated(reach), near);
     for (int f : near)
         for (int v : mesh.faces().face(f))
             local.ids.push_back(v);
@@ -72,7 +74,8 @@ class PatchProblem : public Objective {
 public:
     PatchProblem(const LocalMesh& local, const Material& material, double distance)
         : membrane_(local.rest, local.elastic_faces, materials(local, material)),
-          assembly_(membrane_, static_cast<int>(local.ids.size())), targets_(as_vector(local.x)), anchor_(targets_) {
+          assembly_(membrane_, static_cast<int>(local.ids.size())), room_(local.room), targets_(as_vector(local.x)),
+          anchor_(targets_) {
         ContactOptions options;
         options.distance = distance;
         options.stiffness = material.youngs_modulus;
@@ -114,8 +117,13 @@ public:
     }
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
+    /// Nothing is known of what lies outside the room, so no vertex may leave it.
     double max_step(const VecX& x, const VecX& d) override {
-        return contact_->max_step(as_positions(x), as_positions(d));
+        double alpha = 1;
+        for (Eigen::Index i = 0; i < d.size(); ++i)
+            if (const double wall = d[i] > 0 ? room_.high[i % 3] : room_.low[i % 3]; d[i] != 0)
+                alpha = std::min(alpha, std::max(0.0, (wall - x[i]) / d[i]));
+        return alpha * contact_->max_step(as_positions(x), as_positions(VecX(alpha * d)));
     }
 
 private:
@@ -132,6 +140,7 @@ private:
     ContactOptions options_;
     std::unique_ptr<Contact> contact_;
     NewtonSystem system_;
+    Box room_;
     VecX targets_, anchor_;
     double inertia_ = 0;
 };
