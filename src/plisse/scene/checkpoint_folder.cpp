@@ -1,6 +1,6 @@
 #include <plisse/scene/checkpoint_folder.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -68,8 +68,11 @@ bool fill_state(std::string_view bytes, Checkpoint& checkpoint) {
     const std::size_t velocities = bytes_of(checkpoint.velocity).size();
     if (bytes.size() != positions + velocities)
         return false;
-    std::memcpy(checkpoint.positions.data(), bytes.data(), positions);
-    std::memcpy(checkpoint.velocity.data(), bytes.data() + positions, velocities);
+    const auto fill = [](Positions& target, std::string_view source) { // there may be nothing to copy, and nowhere
+        std::copy(source.begin(), source.end(), reinterpret_cast<char*>(target.data()));
+    };
+    fill(checkpoint.positions, bytes.substr(0, positions));
+    fill(checkpoint.velocity, bytes.substr(positions));
     return true;
 }
 
