@@ -18,7 +18,7 @@ std::size_t at(int index) {
 
 /// The faces in reach of a patch in numbers of their own.
 struct LocalMesh {
-    Box room; ///< where free vertices may go: all faces within reach of it are there
+    Box room;             ///< where free vertices may go: all faces within reach of it are there
     std::vector<int> ids; ///< hierarchy id of each local vertex, ascending
     std::vector<Face> faces;
     std::vector<Face> elastic_faces; ///< those with a free corner

@@ -26,6 +26,12 @@ std::size_t triangle_room(int size) {
     return (at(size) * at(size) + alignment - 1) / alignment * alignment;
 }
 
+/// Makes room, with some to spare: memory that is new each time would cost more than the analysis.
+void grow(VecX& storage, std::size_t size) {
+    if (static_cast<std::size_t>(storage.size()) < size)
+        storage.resize(static_cast<Eigen::Index>(size + size / 4));
+}
+
 } // namespace
 
 SparseCholesky::SparseCholesky() {
@@ -167,8 +173,8 @@ void SparseCholesky::analyze(const NewtonSystem& system) {
         children_[at(parent < 0 ? fronts : parent)].push_back(f);
         panel_starts_.push_back(panel_starts_.back() + at(front_size(f)) * at(3 * elimination_.pivot_count(f)));
     }
-    panels_.resize(static_cast<Eigen::Index>(panel_starts_.back()));
-    carried_.resize(3 * static_cast<Eigen::Index>(elimination_.reach.size()));
+    grow(panels_, panel_starts_.back());
+    grow(carried_, 3 * elimination_.reach.size());
     place_blocks(system);
     lay_out_updates();
 }
@@ -244,7 +250,7 @@ void SparseCholesky::lay_out_updates() {
             next.other += is_heavy(f) ? room[at(c)].own : triangle_room(reach_size(c));
         }
     }
-    updates_.resize(static_cast<Eigen::Index>(room[at(fronts)].own + room[at(fronts)].other));
+    grow(updates_, room[at(fronts)].own + room[at(fronts)].other);
 }
 
 /// Gathers a front: the blocks of the system in its pivots' columns, and what its children leave.
