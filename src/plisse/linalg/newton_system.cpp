@@ -22,6 +22,7 @@ NewtonSystem::NewtonSystem(std::vector<std::uint8_t> prescribed, std::span<const
     : prescribed_(std::move(prescribed)) {
     const std::size_t vertices = prescribed_.size() / 3;
     row_of_vertex_.assign(vertices, -1);
+    free_row_.assign(vertices, -1);
     partly_prescribed_.assign(vertices, 0);
     prescribed_step_ = VecX::Zero(static_cast<Eigen::Index>(prescribed_.size()));
     for (std::size_t v = 0; v < vertices; ++v) {
@@ -29,6 +30,7 @@ NewtonSystem::NewtonSystem(std::vector<std::uint8_t> prescribed, std::span<const
         if (count == 3)
             continue;
         row_of_vertex_[v] = row_count();
+        free_row_[v] = count == 0 ? row_count() : -1;
         vertex_of_row_.push_back(static_cast<int>(v));
         partly_prescribed_[v] = count > 0;
     }
@@ -59,11 +61,10 @@ void NewtonSystem::begin(std::span<const Edge> extra_pairs) {
         const std::size_t vertex = at(vertex_of_row_[at(column)]);
         if (!partly_prescribed_[vertex])
             continue;
-        double* diagonal = block_values(column, column_starts_[at(column)]);
-        const int stride = column_stride(column);
+        Values diagonal = values_of(column, column);
         for (int a = 0; a < 3; ++a)
             if (prescribed_[3 * vertex + at(a)])
-                diagonal[a * stride + a] = 1;
+                diagonal(a, a) = 1;
     }
 }
 
@@ -122,23 +123,6 @@ void NewtonSystem::set_pattern(const std::vector<std::uint64_t>& keys) {
     ++pattern_version_;
 }
 
-int NewtonSystem::find_block(int row, int column) const {
-    const int begin = column_starts_[at(column)], end = column_starts_[at(column) + 1];
-    int found = begin; // counted without branches: columns are short, and a search would mispredict
-    for (int k = begin; k < end; ++k)
-        found += block_rows_[at(k)] < row;
-    return found < end && block_rows_[at(found)] == row ? found : -1;
-}
-
-double* NewtonSystem::block_values(int column, int block) {
-    const std::size_t start = at(column_starts_[at(column)]);
-    return values_.data() + 9 * start + 3 * (at(block) - start);
-}
-
-int NewtonSystem::column_stride(int column) const {
-    return 3 * (column_starts_[at(column) + 1] - column_starts_[at(column)]);
-}
-
 void NewtonSystem::add_block(int i, int j, const Mat3& block) {
     const auto step_i = prescribed_step_.segment<3>(3 * i);
     const auto step_j = prescribed_step_.segment<3>(3 * j);
@@ -152,10 +136,7 @@ void NewtonSystem::add_block(int i, int j, const Mat3& block) {
         if (row < 0 || column < 0)
             return;
     }
-    const int k = find_block(row, column);
-    assert(k >= 0 && "block outside the pattern: pass its pair to begin()");
-    Eigen::Map<Mat3, 0, Eigen::OuterStride<>> values(block_values(column, k),
-                                                     Eigen::OuterStride<>(column_stride(column)));
+    Values values = values_of(row, column);
     if (!special) {
         values += block;
         return;
@@ -167,12 +148,8 @@ void NewtonSystem::add_block(int i, int j, const Mat3& block) {
 }
 
 Mat3 NewtonSystem::block(int i, int j) const {
-    const int column = row_of_vertex_[at(j)];
-    const int k = find_block(row_of_vertex_[at(i)], column);
-    assert(k >= 0);
-    const std::size_t start = at(column_starts_[at(column)]);
-    const double* values = values_.data() + 9 * start + 3 * (at(k) - start);
-    return Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>(values, Eigen::OuterStride<>(column_stride(column)));
+    const auto [start, stride] = place_of(row_of_vertex_[at(i)], row_of_vertex_[at(j)]);
+    return Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>(values_.data() + start, stride);
 }
 
 VecX NewtonSystem::gather(const VecX& vertices) const {

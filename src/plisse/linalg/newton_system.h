@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cassert>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <plisse/base/types.h>
@@ -38,10 +40,17 @@ public:
     template <typename Derived>
     void add(std::span<const int> vertices, const Eigen::MatrixBase<Derived>& element) {
         for (std::size_t j = 0; j < vertices.size(); ++j)
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                if (vertices[i] >= vertices[j])
-                    add_block(vertices[i], vertices[j],
-                              element.template block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j)));
+            for (std::size_t i = 0; i < vertices.size(); ++i) {
+                if (vertices[i] < vertices[j])
+                    continue;
+                const auto block = element.template block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j));
+                const int row = free_row_[static_cast<std::size_t>(vertices[i])];
+                const int column = free_row_[static_cast<std::size_t>(vertices[j])];
+                if (row >= 0 && column >= 0)
+                    values_of(row, column) += block;
+                else
+                    add_block(vertices[i], vertices[j], block);
+            }
     }
     /// Adds block (i, j), i >= j, and by symmetry its transpose at (j, i).
     void add_block(int i, int j, const Mat3& block);
@@ -68,12 +77,34 @@ private:
     void reserve_pattern(std::span<const Edge> extra_pairs);
     std::vector<std::uint64_t> pattern_keys() const;
     void set_pattern(const std::vector<std::uint64_t>& keys);
-    int find_block(int row, int column) const;
-    double* block_values(int column, int block);
-    int column_stride(int column) const;
+    using Values = Eigen::Map<Mat3, 0, Eigen::OuterStride<>>;
+
+    /// The block's number, counted without branches: columns are short, and a search would mispredict. -1 if none.
+    int find_block(int row, int column) const {
+        const int begin = column_starts_[static_cast<std::size_t>(column)];
+        const int end = column_starts_[static_cast<std::size_t>(column) + 1];
+        int found = begin;
+        for (int k = begin; k < end; ++k)
+            found += block_rows_[static_cast<std::size_t>(k)] < row;
+        return found < end && block_rows_[static_cast<std::size_t>(found)] == row ? found : -1;
+    }
+    /// Where the block's first scalar lies in values(), and how far apart its columns are.
+    std::pair<std::size_t, Eigen::OuterStride<>> place_of(int row, int column) const {
+        const int begin = column_starts_[static_cast<std::size_t>(column)];
+        const int end = column_starts_[static_cast<std::size_t>(column) + 1];
+        const int k = find_block(row, column);
+        assert(k >= 0 && "block outside the pattern: pass its pair to begin()");
+        return {9 * static_cast<std::size_t>(begin) + 3 * static_cast<std::size_t>(k - begin),
+                Eigen::OuterStride<>(3 * (end - begin))};
+    }
+    Values values_of(int row, int column) {
+        const auto [start, stride] = place_of(row, column);
+        return Values(values_.data() + start, stride);
+    }
 
     std::vector<std::uint8_t> prescribed_;
     std::vector<int> row_of_vertex_; ///< -1 where all three axes are prescribed
+    std::vector<int> free_row_;      ///< the same, also -1 where some are
     std::vector<int> vertex_of_row_;
     std::vector<std::uint8_t> partly_prescribed_; ///< per vertex
     std::vector<std::uint64_t> base_keys_;
