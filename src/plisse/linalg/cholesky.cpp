@@ -77,7 +77,7 @@ VecX SparseCholesky::solve(const VecX& right_hand_side) {
         auto carried = carried_of(f);
         const int pivot_count = e.pivot_count(f);
         carried.setZero();
-        for (int c : children_[at(f)]) {
+        for (int c : elimination_.children[at(f)]) {
             const auto place = e.place_of(c);
             const auto from = carried_of(c);
             for (std::size_t i = 0; i < place.size(); ++i) {
@@ -131,7 +131,7 @@ void SparseCholesky::visit_upwards(int front, const Visit& visit) const {
             visit(f);
         return;
     }
-    const auto& children = children_[at(front)];
+    const auto& children = elimination_.children[at(front)];
     parallel_for(static_cast<int>(children.size()), 1, [&](int c) { visit_upwards(children[at(c)], visit); });
     if (front < elimination_.front_count())
         visit(front);
@@ -147,7 +147,7 @@ void SparseCholesky::visit_downwards(int front, const Visit& visit) const {
     }
     if (front < elimination_.front_count())
         visit(front);
-    const auto& children = children_[at(front)];
+    const auto& children = elimination_.children[at(front)];
     parallel_for(static_cast<int>(children.size()), 1, [&](int c) { visit_downwards(children[at(c)], visit); });
 }
 
@@ -166,11 +166,8 @@ void SparseCholesky::analyze(const NewtonSystem& system) {
     }
 
     const int fronts = elimination_.front_count();
-    children_.assign(at(fronts) + 1, {});
     panel_starts_.assign(1, 0);
     for (int f = 0; f < fronts; ++f) {
-        const int parent = elimination_.parent[at(f)];
-        children_[at(parent < 0 ? fronts : parent)].push_back(f);
         panel_starts_.push_back(panel_starts_.back() + at(front_size(f)) * at(3 * elimination_.pivot_count(f)));
     }
     grow(panels_, panel_starts_.back());
@@ -228,7 +225,7 @@ void SparseCholesky::lay_out_updates() {
     for (int f = 0; f <= fronts; ++f) {
         Room& mine = room[at(f)];
         std::size_t before = 0;
-        for (int c : children_[at(f)]) {
+        for (int c : elimination_.children[at(f)]) {
             const Room& theirs = room[at(c)];
             mine.own = is_heavy(f) ? mine.own + theirs.other : std::max(mine.own, theirs.other);
             mine.other = std::max(mine.other, before + theirs.own);
@@ -244,7 +241,7 @@ void SparseCholesky::lay_out_updates() {
         Room next = start[at(f)];
         if (f < fronts)
             update_starts_[at(f)] = next.own;
-        for (int c : children_[at(f)]) {
+        for (int c : elimination_.children[at(f)]) {
             start[at(c)] = {next.other, next.own};
             next.own += is_heavy(f) ? room[at(c)].other : 0;
             next.other += is_heavy(f) ? room[at(c)].own : triangle_room(reach_size(c));
@@ -270,12 +267,12 @@ void SparseCholesky::assemble(int front, const std::vector<double>& values, doub
     }
     for (int p = 0; p < pivots; ++p)
         panel[at(p) * at(size) + at(p)] += shift;
-    if (children_[at(front)].empty())
+    if (elimination_.children[at(front)].empty())
         return;
     double* update = updates_.data() + update_starts_[at(front)];
     for (int column = 0; column < reach; ++column)
         std::fill(update + at(column) * at(reach) + at(column / 3 * 3), update + (at(column) + 1) * at(reach), 0.0);
-    for (int child : children_[at(front)])
+    for (int child : elimination_.children[at(front)])
         add_update(child, front);
 }
 
@@ -315,7 +312,7 @@ bool SparseCholesky::eliminate(int front) {
         return true;
     cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, reach, pivots, 1, panel, size,
                 panel + pivots, size);
-    const double updated = children_[at(front)].empty() ? 0 : 1; // 0 clears what the memory holds
+    const double updated = elimination_.children[at(front)].empty() ? 0 : 1; // 0 clears what the memory holds
     cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, reach, pivots, -1, panel + pivots, size, updated,
                 updates_.data() + update_starts_[at(front)], reach);
     return true;

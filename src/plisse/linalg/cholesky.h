@@ -53,8 +53,7 @@ private:
     bool eliminate(int front);
 
     Elimination elimination_;
-    std::vector<std::vector<int>> children_; ///< of every front; the last list is that of the roots
-    std::vector<Placement> placements_;      ///< sorted by front
+    std::vector<Placement> placements_; ///< sorted by front
     std::vector<std::size_t> placement_starts_;
     std::vector<std::size_t> panel_starts_;
     VecX panels_; ///< of every front, its columns of the factor: all its rows times its pivots, column by column

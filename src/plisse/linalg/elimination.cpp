@@ -215,6 +215,9 @@ void number_fronts(const std::vector<Front>& fronts, const std::vector<int>& ord
         result.parent.push_back(parent[at(k)] < 0 ? -1 : number[at(parent[at(k)])]);
         result.cost.push_back(front_cost(front.pivots(), front.rows));
     }
+    result.children.resize(kept.size() + 1);
+    for (std::size_t f = 0; f < kept.size(); ++f)
+        result.children[result.parent[f] < 0 ? kept.size() : at(result.parent[f])].push_back(static_cast<int>(f));
     result.first_below.resize(kept.size());
     std::iota(result.first_below.begin(), result.first_below.end(), 0);
     for (std::size_t f = 0; f < kept.size(); ++f)
@@ -226,7 +229,6 @@ void number_fronts(const std::vector<Front>& fronts, const std::vector<int>& ord
 
 /// Finds what every front reaches: what its pivots are coupled with, and what its children hand on.
 void find_reach(const Lists& later, Elimination& e) {
-    std::vector<std::vector<int>> children(e.parent.size());
     std::vector<int> seen(e.order.size(), -1), row(e.order.size());
     for (int f = 0; f < e.front_count(); ++f) {
         const int first = e.first_pivot[at(f)], end = e.first_pivot[at(f) + 1];
@@ -240,13 +242,11 @@ void find_reach(const Lists& later, Elimination& e) {
         for (int p = first; p < end; ++p)
             for (int q : later[p])
                 add(q);
-        for (int c : children[at(f)])
+        for (int c : e.children[at(f)])
             for (int k = e.reach_starts[at(c)]; k < e.reach_starts[at(c) + 1]; ++k)
                 add(e.reach[at(k)]);
         std::sort(e.reach.begin() + start, e.reach.end());
         e.reach_starts.push_back(static_cast<int>(e.reach.size()));
-        if (e.parent[at(f)] >= 0)
-            children[at(e.parent[at(f)])].push_back(f);
 
         int rows = 0;
         for (int p = first; p < end; ++p)
@@ -254,7 +254,7 @@ void find_reach(const Lists& later, Elimination& e) {
         for (int p : e.reach_of(f))
             row[at(p)] = rows++;
         e.place.resize(e.reach.size());
-        for (int c : children[at(f)])
+        for (int c : e.children[at(f)])
             for (int k = e.reach_starts[at(c)]; k < e.reach_starts[at(c) + 1]; ++k)
                 e.place[at(k)] = row[at(e.reach[at(k)])];
     }

@@ -10,11 +10,12 @@ namespace plisse {
 /// method, Duff and Reid 1983; Liu 1992). What a front leaves to do is added to its parent. Fronts are numbered so that
 /// each comes after all those below it. Counts are in rows of 3x3 blocks.
 struct Elimination {
-    std::vector<int> order;           ///< order[p] is the row eliminated as the p-th
-    std::vector<int> first_pivot{0};  ///< front f has pivots first_pivot[f] <= p < first_pivot[f + 1]
-    std::vector<int> parent;          ///< of every front; -1 at a root
-    std::vector<int> first_below;     ///< the lowest-numbered front of the subtree of every front
-    std::vector<int> reach_starts{0}; ///< front f reaches reach[reach_starts[f]] .., ascending, behind its pivots
+    std::vector<int> order;                 ///< order[p] is the row eliminated as the p-th
+    std::vector<int> first_pivot{0};        ///< front f has pivots first_pivot[f] <= p < first_pivot[f + 1]
+    std::vector<int> parent;                ///< of every front; -1 at a root
+    std::vector<std::vector<int>> children; ///< of every front, ascending; the last list is that of the roots
+    std::vector<int> first_below;           ///< the lowest-numbered front of the subtree of every front
+    std::vector<int> reach_starts{0};       ///< front f reaches reach[reach_starts[f]] .., ascending, behind its pivots
     std::vector<int> reach;
     std::vector<int> place;   ///< of each entry of reach: its row in the parent's front, whose pivots come first
     std::vector<double> cost; ///< estimated time of the subtree of every front, microseconds

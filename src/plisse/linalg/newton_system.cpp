@@ -123,24 +123,15 @@ void NewtonSystem::set_pattern(const std::vector<std::uint64_t>& keys) {
     ++pattern_version_;
 }
 
-void NewtonSystem::add_block(int i, int j, const Mat3& block) {
-    const auto step_i = prescribed_step_.segment<3>(3 * i);
-    const auto step_j = prescribed_step_.segment<3>(3 * j);
+void NewtonSystem::add_prescribed_block(int i, int j, const Mat3& block) {
+    coupling_.segment<3>(3 * i) += block * prescribed_step_.segment<3>(3 * j);
+    if (i != j)
+        coupling_.segment<3>(3 * j) += block.transpose() * prescribed_step_.segment<3>(3 * i);
     const int row = row_of_vertex_[at(i)];
     const int column = row_of_vertex_[at(j)];
-    const bool special = row < 0 || column < 0 || partly_prescribed_[at(i)] || partly_prescribed_[at(j)];
-    if (special) {
-        coupling_.segment<3>(3 * i) += block * step_j;
-        if (i != j)
-            coupling_.segment<3>(3 * j) += block.transpose() * step_i;
-        if (row < 0 || column < 0)
-            return;
-    }
-    Values values = values_of(row, column);
-    if (!special) {
-        values += block;
+    if (row < 0 || column < 0)
         return;
-    }
+    Values values = values_of(row, column);
     for (int b = 0; b < 3; ++b)
         for (int a = 0; a < 3; ++a)
             if (!(prescribed_[at(3 * i + a)] || prescribed_[at(3 * j + b)]))

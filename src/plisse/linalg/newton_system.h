@@ -40,20 +40,21 @@ public:
     template <typename Derived>
     void add(std::span<const int> vertices, const Eigen::MatrixBase<Derived>& element) {
         for (std::size_t j = 0; j < vertices.size(); ++j)
-            for (std::size_t i = 0; i < vertices.size(); ++i) {
-                if (vertices[i] < vertices[j])
-                    continue;
-                const auto block = element.template block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j));
-                const int row = free_row_[static_cast<std::size_t>(vertices[i])];
-                const int column = free_row_[static_cast<std::size_t>(vertices[j])];
-                if (row >= 0 && column >= 0)
-                    values_of(row, column) += block;
-                else
-                    add_block(vertices[i], vertices[j], block);
-            }
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                if (vertices[i] >= vertices[j])
+                    add_block(vertices[i], vertices[j],
+                              element.template block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j)));
     }
     /// Adds block (i, j), i >= j, and by symmetry its transpose at (j, i).
-    void add_block(int i, int j, const Mat3& block);
+    template <typename Derived>
+    void add_block(int i, int j, const Eigen::MatrixBase<Derived>& block) {
+        const int row = free_row_[static_cast<std::size_t>(i)];
+        const int column = free_row_[static_cast<std::size_t>(j)];
+        if (row >= 0 && column >= 0)
+            values_of(row, column) += block;
+        else
+            add_prescribed_block(i, j, block);
+    }
 
     /// Block (i, j) of the lower triangle, i >= j; both have rows and the pattern holds the block.
     Mat3 block(int i, int j) const;
@@ -74,6 +75,8 @@ public:
     VecX scatter(const VecX& rows) const;
 
 private:
+    /// One or both of the vertices are prescribed in some axes.
+    void add_prescribed_block(int i, int j, const Mat3& block);
     void reserve_pattern(std::span<const Edge> extra_pairs);
     std::vector<std::uint64_t> pattern_keys() const;
     void set_pattern(const std::vector<std::uint64_t>& keys);
