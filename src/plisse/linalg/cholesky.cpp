@@ -165,11 +165,9 @@ void SparseCholesky::analyze(const NewtonSystem& system) {
         ++ordering_count_;
     }
 
-    const int fronts = elimination_.front_count();
     panel_starts_.assign(1, 0);
-    for (int f = 0; f < fronts; ++f) {
+    for (int f = 0; f < elimination_.front_count(); ++f)
         panel_starts_.push_back(panel_starts_.back() + at(front_size(f)) * at(3 * elimination_.pivot_count(f)));
-    }
     grow(panels_, panel_starts_.back());
     grow(carried_, 3 * elimination_.reach.size());
     place_blocks(system);
