@@ -36,12 +36,19 @@ double largest_regular_step(const std::vector<Face>& faces, const Positions& x, 
     return limits.empty() ? 1.0 : *std::min_element(limits.begin(), limits.end());
 }
 
-/// Barrier pressure scale: the largest bulk modulus E / (3 (1 - 2 nu)) of the bodies (C-IPC section 4).
+/// Barrier pressure scale: the pressure that a membrane of strain 0.1 exerts over a radius of 1/300 of the body, at
+/// most its bulk modulus. With the bulk modulus itself (C-IPC section 4), which a thin shell's contacts are nowhere
+/// near, the barrier would act like a switch (docs/decisions/0009).
 double contact_stiffness(const Model& model) {
     double stiffness = 0;
-    for (const Body& body : model.bodies)
-        stiffness = std::max(stiffness, body.material.youngs_modulus /
-                                            (3 * (1 - 2 * std::min(body.material.poisson_ratio, 0.45))));
+    for (const Body& body : model.bodies) {
+        const Material& material = body.material;
+        const double size =
+            bounding_box(model.mesh.positions.middleCols(body.vertices.begin, body.vertices.size())).diagonal();
+        const double bulk_modulus = material.youngs_modulus / (3 * (1 - 2 * std::min(material.poisson_ratio, 0.45)));
+        stiffness =
+            std::max(stiffness, std::min(30 * material.youngs_modulus * material.thickness / size, bulk_modulus));
+    }
     return stiffness;
 }
 
