@@ -3,6 +3,7 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 
+#include <map>
 #include <optional>
 
 #include <plisse/base/parallel.h>
@@ -201,6 +202,39 @@ TEST(Run, ShowsProgressThatOnlyGrows) {
         EXPECT_LE(context.fractions.back(), 1);
         EXPECT_GT(context.fractions.back(), 0.6);
     }
+}
+
+/// How many iterations each step took.
+struct IterationWitness : Recorder {
+    void on_iteration(const IterationRecord& record) override { ++of_step[record.step]; }
+    std::map<int, int> of_step;
+};
+
+TEST(Run, StartsAStepWhereTheLastOneLeads) {
+    Model model = empty_model("dragged sheet");
+    const Body& sheet = add_body(model, "sheet", {}, sheet_mesh(0.3, 0.05));
+    Handle edge;
+    edge.name = "edge";
+    for (int v = 0; v < sheet.vertices.end; ++v)
+        if (model.mesh.positions(0, v) > 0.15 - 1e-9)
+            edge.vertices.push_back(v);
+    const double speed = 0.1, stop = 0.4;
+    edge.motion.translate.keys = {{0, Vec3::Zero()}, {stop, Vec3(speed * stop, 0, 0)}};
+    model.handles.push_back(edge);
+    model.gravity = Track<Vec3>(Vec3::Zero());
+    model.solve.method = Method::direct;
+    model.solve.time_step = 0.05;
+    model.solve.duration = 0.5;
+    IterationWitness witness;
+    Context context;
+    const RunResult result = run(model, {}, witness, context);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_GT(witness.of_step[1], 0);
+    for (int step = 4; step <= 8; ++step) // steady by then: the last motion is the whole answer
+        EXPECT_EQ(witness.of_step[step], 0) << step;
+    EXPECT_GT(witness.of_step[9], 0); // the edge stops, and the sheet does not go on
+    const Positions there = model.mesh.positions.colwise() + Vec3(speed * stop, 0, 0);
+    EXPECT_LT((result.positions - there).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST(Run, NeverCallsACutStepConverged) {

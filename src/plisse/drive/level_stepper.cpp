@@ -58,11 +58,29 @@ double LevelStepper::fraction(std::string_view phase) const {
                            std::max(1.0, double(timeline_steps(settings_.duration, settings_.time_step))));
 }
 
-NewtonSummary LevelStepper::step(double t, double h, double tolerance, const VecX& anchor, const char* phase,
-                                 int most_iterations) {
+void LevelStepper::begin_step(double t, double h, const VecX& anchor) {
     // Forgetting the ordering here makes a resumed run take the same steps, to the bit, as an uninterrupted one.
     cholesky_.reset();
     problem_.begin_step(as_positions(x_), as_positions(anchor), t, h);
+}
+
+void LevelStepper::extrapolate(const VecX& motion) {
+    const auto& prescribed = problem_.system().prescribed();
+    VecX script = VecX::Zero(x_.size());
+    VecX start = x_ + motion;
+    for (Eigen::Index i = 0; i < x_.size(); ++i)
+        if (prescribed[static_cast<std::size_t>(i)]) {
+            start[i] = problem_.targets()[i];
+            script[i] = start[i] - x_[i];
+        }
+    if (problem_.max_step(x_, start - x_) < 1)
+        return;
+    const bool script_alone = problem_.max_step(x_, script) == 1;
+    if (!script_alone || problem_.value(start) < problem_.value(x_ + script))
+        x_ = start;
+}
+
+NewtonSummary LevelStepper::solve_step(double t, double tolerance, const char* phase, int most_iterations) {
     NewtonOptions options;
     options.tolerance = tolerance * settings_.time_step;
     options.max_iterations = most_iterations;
@@ -101,16 +119,16 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
         const double t_before = std::min(progress_.step * h, duration);
         const double t = std::min((progress_.step + 1) * h, duration);
         const VecX before = x_;
-        VecX anchor = x_;
-        if (settings_.dynamics && progress_.velocity.cols() > 0)
-            anchor += h * as_vector(progress_.velocity);
-        const NewtonSummary summary = step(t, h, settings_.tolerance, anchor, "preview", iteration_cap());
+        const VecX motion =
+            progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
+        begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
+        extrapolate(motion);
+        const NewtonSummary summary = solve_step(t, settings_.tolerance, "preview", iteration_cap());
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
         }
-        if (settings_.dynamics)
-            progress_.velocity = as_positions(VecX((x_ - before) / h));
+        progress_.velocity = as_positions(VecX((x_ - before) / h));
         worst = std::max(worst, outcome_of(summary));
         ++progress_.step;
         const double interval = settings_.frame_interval;
@@ -123,8 +141,8 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
 
 LevelStepper::Outcome LevelStepper::step_once(double t) {
     const VecX before = x_;
-    const NewtonSummary summary =
-        step(t, settings_.time_step, settings_.tolerance, x_, is_last_ ? "final" : "refine", iteration_cap());
+    begin_step(t, settings_.time_step, x_);
+    const NewtonSummary summary = solve_step(t, settings_.tolerance, is_last_ ? "final" : "refine", iteration_cap());
     if (summary.end == NewtonEnd::cancelled)
         x_ = before;
     return outcome_of(summary);
@@ -138,7 +156,8 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
         const double h = progress_.settle_time_step;
         // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short.
         const int most = std::min(iteration_cap(), preview_iteration_cap);
-        const NewtonSummary summary = step(t, h, progress_.settle_tolerance, x_, "settle", most);
+        begin_step(t, h, x_);
+        const NewtonSummary summary = solve_step(t, progress_.settle_tolerance, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;

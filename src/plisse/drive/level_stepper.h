@@ -37,8 +37,11 @@ public:
     const VecX& unknowns() const { return x_; }
 
 private:
-    NewtonSummary step(double t, double h, double tolerance, const VecX& anchor, const char* phase,
-                       int most_iterations);
+    void begin_step(double t, double h, const VecX& anchor);
+    /// Starts the step where the last step's motion leads, with scripts fulfilled, unless something is in the way or
+    /// the script alone leads to a lower value.
+    void extrapolate(const VecX& motion);
+    NewtonSummary solve_step(double t, double tolerance, const char* phase, int most_iterations);
     void save_checkpoint(double t);
     int iteration_cap() const;
     double fraction(std::string_view phase) const;

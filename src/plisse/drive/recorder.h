@@ -83,7 +83,7 @@ struct Checkpoint {
     bool settled = false;           ///< this level is done
     double t = 0;                   ///< s
     Positions positions;            ///< of the level's vertices, exact
-    Positions velocity;             ///< m/s, of the same vertices, when dynamics is on; else empty
+    Positions velocity;             ///< m/s, of the same vertices, in the last step of the timeline; empty before it
     std::vector<int> frame_numbers; ///< next frame number per level
     RunReport report;
 };
