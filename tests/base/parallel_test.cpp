@@ -60,5 +60,12 @@ TEST(ThreadLimit, TakesTheProcessorsForZero) {
     EXPECT_EQ(ThreadLimit(3).threads(), 3);
 }
 
+TEST(ThreadLimit, IsTheThreadCountWhileItLives) {
+    for (int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        EXPECT_EQ(thread_count(), threads);
+    }
+}
+
 } // namespace
 } // namespace plisse

@@ -14,4 +14,8 @@ ThreadLimit::~ThreadLimit() {
     delete static_cast<tbb::global_control*>(control_);
 }
 
+int thread_count() {
+    return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 } // namespace plisse

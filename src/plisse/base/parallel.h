@@ -23,6 +23,9 @@ private:
     void* control_;
 };
 
+/// How many threads parallel loops use now.
+int thread_count();
+
 /// Runs body(i) for i in [0, count). The calls must not write to the same place: nothing orders them.
 template <typename Body>
 void parallel_for(int count, int grain, const Body& body) {

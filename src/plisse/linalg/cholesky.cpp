@@ -4,18 +4,20 @@
 #include <array>
 #include <atomic>
 #include <cassert>
+#include <numeric>
 
-#include <Eigen/Cholesky>
 #include <cblas.h>
 
 #include <plisse/base/parallel.h>
+
+/// LAPACK's Cholesky factorisation of a dense matrix, which OpenBLAS has and its C header leaves out.
+extern "C" void dpotrf_(const char* triangle, const int* size, double* matrix, const int* stride, int* failed_at);
 
 namespace plisse {
 
 namespace {
 
-using MatX = Eigen::MatrixXd;
-using MatrixMap = Eigen::Map<MatX, 0, Eigen::OuterStride<>>;
+using MatrixMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -119,8 +121,18 @@ int SparseCholesky::front_size(int front) const {
 
 /// Subtrees worth a task of their own. front_count() stands for what is above the roots.
 bool SparseCholesky::is_heavy(int front) const {
-    constexpr double task_microseconds = 300;
-    return front == elimination_.front_count() || elimination_.cost[at(front)] > task_microseconds;
+    return front == elimination_.front_count() || elimination_.cost[at(front)] > task_cost_;
+}
+
+/// A few tasks for each thread: more would be no faster, and each needs a workspace of its own, where one for all stays
+/// in the cache.
+double SparseCholesky::worthwhile_task_cost() const {
+    constexpr double least_microseconds = 300;
+    constexpr int tasks_per_thread = 8;
+    double total = 0;
+    for (int root : elimination_.children.back())
+        total += elimination_.cost[at(root)];
+    return thread_count() == 1 ? total : std::max(least_microseconds, total / (tasks_per_thread * thread_count()));
 }
 
 /// Calls visit for the fronts of a subtree, children before parents; those of unlike subtrees possibly at a time.
@@ -152,7 +164,7 @@ void SparseCholesky::visit_downwards(int front, const Visit& visit) const {
 }
 
 void SparseCholesky::analyze(const NewtonSystem& system) {
-    constexpr double fill_worth_reordering = 1.4;
+    constexpr double fill_worth_reordering = 1.15;
     const auto analyze_in = [&](const std::vector<int>& order) {
         elimination_ = analyze_elimination(system.column_starts(), system.block_rows(), order);
     };
@@ -171,6 +183,7 @@ void SparseCholesky::analyze(const NewtonSystem& system) {
     grow(panels_, panel_starts_.back());
     grow(carried_, 3 * elimination_.reach.size());
     place_blocks(system);
+    task_cost_ = worthwhile_task_cost();
     lay_out_updates();
 }
 
@@ -188,7 +201,7 @@ void SparseCholesky::place_blocks(const NewtonSystem& system) {
         const auto reach = e.reach_of(f);
         return e.pivot_count(f) + static_cast<int>(std::lower_bound(reach.begin(), reach.end(), p) - reach.begin());
     };
-    // Counting sort by front: sizes, then starts, then each block at the next place of its front.
+    // Counting sort by pivot: sizes, then starts, then each block at the next place of its pivot.
     const auto& starts = system.column_starts();
     const auto& rows = system.block_rows();
     const auto for_each_block = [&](const auto& visit) {
@@ -196,18 +209,17 @@ void SparseCholesky::place_blocks(const NewtonSystem& system) {
             for (int k = starts[at(c)]; k < starts[at(c) + 1]; ++k)
                 visit(c, k, position[at(c)], position[at(rows[at(k)])]);
     };
-    placement_starts_.assign(at(e.front_count()) + 1, 0);
-    for_each_block([&](int, int, int a, int b) { ++placement_starts_[at(front_of[at(std::min(a, b))]) + 1]; });
-    for (std::size_t f = 1; f < placement_starts_.size(); ++f)
-        placement_starts_[f] += placement_starts_[f - 1];
+    placement_starts_.assign(at(e.row_count()) + 1, 0);
+    for_each_block([&](int, int, int a, int b) { ++placement_starts_[at(std::min(a, b)) + 1]; });
+    std::partial_sum(placement_starts_.begin(), placement_starts_.end(), placement_starts_.begin());
     placements_.resize(rows.size());
     std::vector<std::size_t> next(placement_starts_.begin(), placement_starts_.end() - 1);
     for_each_block([&](int c, int k, int a, int b) {
-        const int f = front_of[at(std::min(a, b))];
+        const int pivot = std::min(a, b), f = front_of[at(pivot)];
         const int start = starts[at(c)];
-        const int column = row_in_front(f, std::min(a, b)), row = row_in_front(f, std::max(a, b));
-        placements_[next[at(f)]++] = {9 * at(start) + 3 * at(k - start), 3 * (starts[at(c) + 1] - start), b < a,
-                                      panel_starts_[at(f)] + 3 * at(column) * at(front_size(f)) + 3 * at(row)};
+        const int column = row_in_front(f, pivot), row = row_in_front(f, std::max(a, b));
+        placements_[next[at(pivot)]++] = {9 * at(start) + 3 * at(k - start), 3 * (starts[at(c) + 1] - start), b < a,
+                                          panel_starts_[at(f)] + 3 * at(column) * at(front_size(f)) + 3 * at(row)};
     });
 }
 
@@ -248,12 +260,35 @@ void SparseCholesky::lay_out_updates() {
     grow(updates_, room[at(fronts)].own + room[at(fronts)].other);
 }
 
-/// Gathers a front: the blocks of the system in its pivots' columns, and what its children leave.
+/// Gathers a front: the blocks of the system in its pivots' columns, and what its children leave. It goes by columns of
+/// blocks, each cleared and filled while it is in the cache. A leaf's update is left to eliminate().
 void SparseCholesky::assemble(int front, const std::vector<double>& values, double shift) {
     const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
-    double* panel = panels_.data() + panel_starts_[at(front)];
-    std::fill_n(panel, at(size) * at(pivots), 0.0);
-    for (std::size_t i = placement_starts_[at(front)]; i < placement_starts_[at(front) + 1]; ++i) {
+    const auto& children = elimination_.children[at(front)];
+    std::vector<std::size_t> taken(children.size(), 0); // columns of blocks of each child's update
+    for (int row = 0; row < (children.empty() ? pivots : size); row += 3) {
+        const bool pivotal = row < pivots;
+        const int stride = pivotal ? size : reach;
+        double* column = pivotal // from its diagonal block down
+                             ? panels_.data() + panel_starts_[at(front)] + at(row) * at(size + 1)
+                             : updates_.data() + update_starts_[at(front)] + at(row - pivots) * at(reach + 1);
+        for (int b = 0; b < 3; ++b)
+            std::fill_n(column + b * stride, size - row, 0.0);
+        if (pivotal)
+            place_system_column(elimination_.first_pivot[at(front)] + row / 3, size, values);
+        for (int b = 0; pivotal && b < 3; ++b)
+            column[b * (size + 1)] += shift;
+        for (std::size_t c = 0; c < children.size(); ++c) {
+            const auto place = elimination_.place_of(children[c]);
+            if (taken[c] < place.size() && 3 * place[taken[c]] == row)
+                add_update_column(children[c], taken[c]++, column, stride);
+        }
+    }
+}
+
+/// Copies the system's blocks of one pivot into their places in the panel, whose columns are `size` apart.
+void SparseCholesky::place_system_column(int pivot, int size, const std::vector<double>& values) {
+    for (std::size_t i = placement_starts_[at(pivot)]; i < placement_starts_[at(pivot) + 1]; ++i) {
         const Placement& placement = placements_[i];
         const double* source = values.data() + placement.source;
         const int across = placement.transposed ? 1 : placement.source_stride;
@@ -263,39 +298,20 @@ void SparseCholesky::assemble(int front, const std::vector<double>& values, doub
             for (int a = 0; a < 3; ++a)
                 target[b * size + a] = source[b * across + a * down];
     }
-    for (int p = 0; p < pivots; ++p)
-        panel[at(p) * at(size) + at(p)] += shift;
-    if (elimination_.children[at(front)].empty())
-        return;
-    double* update = updates_.data() + update_starts_[at(front)];
-    for (int column = 0; column < reach; ++column)
-        std::fill(update + at(column) * at(reach) + at(column / 3 * 3), update + (at(column) + 1) * at(reach), 0.0);
-    for (int child : elimination_.children[at(front)])
-        add_update(child, front);
 }
 
-/// Adds the update of a child to its parent, block by block: the lower triangle, of which the diagonal blocks are
-/// whole.
-void SparseCholesky::add_update(int child, int front) {
-    const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
-    double* panel = panels_.data() + panel_starts_[at(front)];
-    double* update = updates_.data() + update_starts_[at(front)];
-    const double* source = updates_.data() + update_starts_[at(child)];
+/// Adds column j of blocks of a child's update, from its diagonal block down, to the column of the parent where it
+/// belongs.
+void SparseCholesky::add_update_column(int child, std::size_t j, double* column, int stride) {
     const auto place = elimination_.place_of(child);
     const std::size_t height = 3 * place.size();
-    for (std::size_t j = 0; j < place.size(); ++j) {
-        const int column = 3 * place[j];
-        const bool pivotal = column < pivots;
-        const int stride = pivotal ? size : reach;
-        const int first_row = pivotal ? 0 : pivots;
-        double* target = (pivotal ? panel : update) + at(column - first_row) * at(stride);
-        for (std::size_t i = j; i < place.size(); ++i) {
-            const double* from = source + 3 * j * height + 3 * i;
-            double* to = target + 3 * place[i] - first_row;
-            for (int b = 0; b < 3; ++b)
-                for (int a = 0; a < 3; ++a)
-                    to[b * stride + a] += from[at(b) * height + at(a)];
-        }
+    const double* source = updates_.data() + update_starts_[at(child)] + 3 * j * height;
+    for (std::size_t i = j; i < place.size(); ++i) {
+        const double* from = source + 3 * i;
+        double* to = column + 3 * (place[i] - place[j]);
+        for (int b = 0; b < 3; ++b)
+            for (int a = 0; a < 3; ++a)
+                to[b * stride + a] += from[at(b) * height + at(a)];
     }
 }
 
@@ -303,8 +319,9 @@ void SparseCholesky::add_update(int child, int front) {
 bool SparseCholesky::eliminate(int front) {
     const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
     double* panel = panels_.data() + panel_starts_[at(front)];
-    MatrixMap diagonal(panel, pivots, pivots, Eigen::OuterStride<>(size));
-    if (Eigen::LLT<Eigen::Ref<MatX>>(diagonal).info() != Eigen::Success)
+    int failed_at = 0;
+    dpotrf_("L", &pivots, panel, &size, &failed_at);
+    if (failed_at != 0)
         return false;
     if (reach == 0)
         return true;

@@ -42,6 +42,7 @@ private:
     int front_size(int front) const;
     int reach_size(int front) const;
 
+    double worthwhile_task_cost() const;
     bool is_heavy(int front) const;
     template <typename Visit>
     void visit_upwards(int front, const Visit& visit) const;
@@ -49,11 +50,12 @@ private:
     void visit_downwards(int front, const Visit& visit) const;
 
     void assemble(int front, const std::vector<double>& values, double shift);
-    void add_update(int child, int front);
+    void place_system_column(int pivot, int size, const std::vector<double>& values);
+    void add_update_column(int child, std::size_t j, double* column, int stride);
     bool eliminate(int front);
 
     Elimination elimination_;
-    std::vector<Placement> placements_; ///< sorted by front
+    std::vector<Placement> placements_; ///< sorted by pivot
     std::vector<std::size_t> placement_starts_;
     std::vector<std::size_t> panel_starts_;
     VecX panels_; ///< of every front, its columns of the factor: all its rows times its pivots, column by column
@@ -63,6 +65,7 @@ private:
     int pattern_version_ = -1;
     int ordering_count_ = 0;
     double ordered_fill_ = 0;
+    double task_cost_ = 0; ///< microseconds
 };
 
 } // namespace plisse
