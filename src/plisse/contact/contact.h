@@ -13,7 +13,7 @@ enum class HessianKind { projected, gauss_newton };
 
 struct ContactOptions {
     double distance = 1e-3; ///< m, > 0: surfaces nearer than this repel
-    double stiffness = 1e6; ///< Pa, > 0: scale of the barrier's pressure, from the bodies' bulk modulus
+    double stiffness = 1e6; ///< Pa, > 0: scale of the barrier's pressure
     bool self = true;       ///< whether a body meets itself (different bodies always meet)
     double ccd_ratio = 0.1; ///< in (0, 1): share of its distance a pair keeps in one step at least
     HessianKind hessian = HessianKind::projected;
