@@ -13,6 +13,7 @@
 #include <plisse/spatial/intersections.h>
 
 #include "contact/sheets.h"
+#include "linalg/dense_system.h"
 
 namespace plisse {
 namespace {
@@ -307,7 +308,7 @@ TEST(Contact, ResultsDoNotDependOnThreads) {
         Positions rest = scene.x;
         rest.row(1) *= 10;
         Contact contact(scene.mesh(rest), options);
-        return std::tuple(contact.value(x), gradient_of(contact, x), system_of(contact, x).values(),
+        return std::tuple(contact.value(x), gradient_of(contact, x), system_of(contact, x).blocks(),
                           contact.max_step(x, d), contact.coupled_pairs(x));
     };
     const auto one = run(1), two = run(2);

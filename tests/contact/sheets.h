@@ -59,23 +59,4 @@ inline Positions jittered(const Positions& x, Random& random, double size) {
     return result;
 }
 
-inline Eigen::MatrixXd dense(const NewtonSystem& system) {
-    const int n = 3 * system.row_count();
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-    for (int column = 0; column < system.row_count(); ++column) {
-        const int begin = system.column_starts()[static_cast<std::size_t>(column)];
-        const int end = system.column_starts()[static_cast<std::size_t>(column) + 1];
-        for (int k = begin; k < end; ++k)
-            for (int a = 0; a < 3; ++a)
-                for (int b = 0; b < 3; ++b) {
-                    const int row = 3 * system.block_rows()[static_cast<std::size_t>(k)] + a, to = 3 * column + b;
-                    const double value = system.values()[static_cast<std::size_t>(9 * begin + b * 3 * (end - begin) +
-                                                                                  3 * (k - begin) + a)];
-                    matrix(row, to) = value;
-                    matrix(to, row) = value;
-                }
-    }
-    return matrix;
-}
-
 } // namespace plisse

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <energy/shell_fixtures.h>
+#include <linalg/dense_system.h>
 #include <plisse/base/parallel.h>
 
 namespace plisse {
@@ -27,31 +28,13 @@ struct Fixture {
 };
 
 NewtonSystem assembled_system(const Fixture& fixture, const ElementEnergy& energy) {
-    const ElementAssembly assembly(energy, fixture.mesh.vertex_count());
+    ElementAssembly assembly(energy, fixture.mesh.vertex_count());
     NewtonSystem system(std::vector<std::uint8_t>(static_cast<std::size_t>(fixture.x.size()), 0), assembly.pairs());
     system.set_prescribed_step(VecX::Zero(fixture.x.size()));
+    assembly.place_in(system);
     system.begin({});
     assembly.add_hessian(fixture.x, system);
     return system;
-}
-
-Eigen::MatrixXd dense(const NewtonSystem& system) {
-    const int n = 3 * system.row_count();
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-    for (int c = 0; c + 1 < static_cast<int>(system.column_starts().size()); ++c) {
-        const int start = system.column_starts()[static_cast<std::size_t>(c)];
-        const int count = system.column_starts()[static_cast<std::size_t>(c) + 1] - start;
-        for (int k = 0; k < count; ++k)
-            for (int b = 0; b < 3; ++b)
-                for (int a = 0; a < 3; ++a) {
-                    const int row = 3 * system.block_rows()[static_cast<std::size_t>(start + k)] + a;
-                    const double value =
-                        system.values()[static_cast<std::size_t>(9 * start + b * 3 * count + 3 * k + a)];
-                    matrix(row, 3 * c + b) = value;
-                    matrix(3 * c + b, row) = value;
-                }
-    }
-    return matrix;
 }
 
 TEST(ElementAssembly, SumsElementsOneByOne) {
@@ -82,13 +65,13 @@ TEST(ElementAssembly, GivesTheSameBitsForAnyNumberOfThreads) {
     const ElementAssembly assembly(fixture.hinges, fixture.mesh.vertex_count());
     std::vector<double> values;
     std::vector<Positions> gradients;
-    std::vector<std::vector<double>> hessians;
+    std::vector<std::vector<Mat3>> hessians;
     for (int threads : {1, 2, 4}) {
         const ThreadLimit limit(threads);
         values.push_back(assembly.value(fixture.x));
         gradients.push_back(Positions::Zero(3, fixture.x.cols()));
         assembly.add_gradient(fixture.x, gradients.back());
-        hessians.push_back(assembled_system(fixture, fixture.hinges).values());
+        hessians.push_back(assembled_system(fixture, fixture.hinges).blocks());
     }
     for (std::size_t k = 1; k < values.size(); ++k) {
         EXPECT_EQ(values[k], values[0]);

@@ -6,6 +6,8 @@
 #include <plisse/base/random.h>
 #include <plisse/linalg/cholesky.h>
 
+#include "linalg/dense_system.h"
+
 using namespace plisse;
 
 namespace {
@@ -54,19 +56,6 @@ struct Grid {
 
     static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 };
-
-Eigen::MatrixXd dense(const NewtonSystem& system) {
-    const int n = system.row_count();
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(3 * n, 3 * n);
-    for (int c = 0; c < n; ++c)
-        for (int k = system.column_starts()[Grid::at(c)]; k < system.column_starts()[Grid::at(c) + 1]; ++k) {
-            const int r = system.block_rows()[Grid::at(k)];
-            const Mat3 block = system.block(r, c);
-            matrix.block<3, 3>(3 * r, 3 * c) = block;
-            matrix.block<3, 3>(3 * c, 3 * r) = block.transpose();
-        }
-    return matrix;
-}
 
 VecX ramp(int size) {
     return VecX::LinSpaced(size, -1, 2);

@@ -70,5 +70,41 @@ TEST(Coloring, OfNothingIsEmpty) {
     EXPECT_TRUE(color({}, 0).order.empty());
 }
 
+TEST(ColoredGroups, HoldEveryElementOnceAndShareNoVertexWithinAColor) {
+    constexpr int vertex_count = 1000, group_size = 16;
+    const Elements elements = random_elements(3000, vertex_count, 3);
+    const ColoredGroups groups = color_groups(static_cast<int>(elements.size()), vertex_count, group_size, [&](int e) {
+        return std::span<const int>(elements[static_cast<std::size_t>(e)]);
+    });
+    std::vector<int> seen(elements.size(), 0);
+    for (int c = 0; c < groups.coloring.color_count(); ++c) {
+        std::vector<int> user(vertex_count, -1);
+        for (int g : groups.coloring.elements(c)) {
+            EXPECT_FALSE(groups.group(g).empty());
+            EXPECT_LE(groups.group(g).size(), static_cast<std::size_t>(group_size));
+            for (int e : groups.group(g)) {
+                ++seen[static_cast<std::size_t>(e)];
+                for (int v : elements[static_cast<std::size_t>(e)]) {
+                    int& of_vertex = user[static_cast<std::size_t>(v)];
+                    EXPECT_TRUE(of_vertex == -1 || of_vertex == g);
+                    of_vertex = g;
+                }
+            }
+        }
+    }
+    EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
+}
+
+TEST(ColoredGroups, LieTogether) {
+    constexpr int length = 320, group_size = 32;
+    std::vector<std::array<int, 2>> chain;
+    for (int e = 0; e < length; ++e)
+        chain.push_back({(7 * e) % length, (7 * e + 1) % length}); // a ring, in a scattered order
+    const ColoredGroups groups = color_groups(
+        length, length, group_size, [&](int e) { return std::span<const int>(chain[static_cast<std::size_t>(e)]); });
+    EXPECT_EQ(groups.group_starts.size(), 11u);
+    EXPECT_LE(groups.coloring.color_count(), 3);
+}
+
 } // namespace
 } // namespace plisse

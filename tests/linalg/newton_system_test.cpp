@@ -112,4 +112,27 @@ TEST(NewtonSystem, TakesExtraPairsAndForgetsThem) {
     EXPECT_EQ(system.block_rows().size(), base_blocks);
 }
 
+TEST(NewtonSystem, AddsAtNumbersWhatItAddsBySearching) {
+    Chain chain(9, 7);
+    std::vector<std::uint8_t> prescribed(27, 0);
+    for (int scalar : {0, 1, 2, 13}) // all of vertex 0, one axis of vertex 4
+        prescribed[static_cast<std::size_t>(scalar)] = 1;
+    NewtonSystem searched(prescribed, chain.pairs), numbered(prescribed, chain.pairs);
+    std::vector<int> numbers;
+    for (const Edge& pair : chain.pairs)
+        numbered.append_base_blocks(pair, numbers);
+    EXPECT_EQ(numbered.base_block(0, 0), -1);
+    EXPECT_EQ(numbered.base_block(5, 4), -1);
+    for (NewtonSystem* system : {&searched, &numbered})
+        system->set_prescribed_step(random_vector(27, 8));
+    const std::vector<Edge> extra = {{8, 3}}; // numbers hold while the pattern changes
+    chain.assemble(searched, extra);
+    numbered.begin(extra);
+    for (std::size_t e = 0; e < chain.pairs.size(); ++e)
+        numbered.add(chain.pairs[e], numbers.data() + 3 * e, chain.elements[e]);
+    EXPECT_EQ(numbered.blocks(), searched.blocks());
+    EXPECT_EQ(numbered.coupling(), searched.coupling());
+    EXPECT_GT(numbered.coupling().norm(), 0);
+}
+
 } // namespace

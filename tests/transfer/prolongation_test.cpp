@@ -8,6 +8,8 @@
 #include <plisse/base/random.h>
 #include <plisse/transfer/galerkin.h>
 
+#include "linalg/dense_system.h"
+
 using namespace plisse;
 
 namespace {
@@ -188,28 +190,16 @@ TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
             for (int w : vertices)
                 if (v < w)
                     pairs.push_back({v, w});
-    NewtonSystem fine_system(std::vector<std::uint8_t>(120, 0), pairs);
+    GalerkinProduct product(p, pairs);
+    NewtonSystem fine_system(std::vector<std::uint8_t>(120, 0), product.fine_pairs());
     fine_system.begin({});
     for (std::size_t e = 0; e < elements.size(); ++e)
         fine_system.add(elements[e], hessians[e]);
-    const GalerkinProduct product(p, pairs);
     NewtonSystem system(std::vector<std::uint8_t>(27, 0), product.pairs());
+    product.place_in(system);
     system.begin({});
     product.add(blocks, fine_system, system);
-    Eigen::MatrixXd actual = Eigen::MatrixXd::Zero(27, 27);
-    for (int c = 0; c < 9; ++c) {
-        const int begin = system.column_starts()[static_cast<std::size_t>(c)];
-        const int blocks_in_column = system.column_starts()[static_cast<std::size_t>(c) + 1] - begin;
-        for (int k = 0; k < blocks_in_column; ++k)
-            for (int b = 0; b < 3; ++b)
-                for (int a = 0; a < 3; ++a) {
-                    const int r = 3 * system.block_rows()[static_cast<std::size_t>(begin + k)] + a;
-                    const double value =
-                        system.values()[static_cast<std::size_t>(9 * begin + b * 3 * blocks_in_column + 3 * k + a)];
-                    actual(r, 3 * c + b) = value;
-                    actual(3 * c + b, r) = value;
-                }
-    }
+    const Eigen::MatrixXd actual = dense(system);
     EXPECT_LT((actual - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
 }
 

@@ -82,6 +82,7 @@ public:
         collision_ = CollisionMesh(local.rest, local.faces, local.part, {0, 1});
         set_stiffness(options);
         system_ = NewtonSystem(local.prescribed, assembly_.pairs());
+        assembly_.place_in(system_);
         inertia_ = 1e-3 * material.youngs_modulus * material.thickness;
     }
 

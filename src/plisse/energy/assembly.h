@@ -9,7 +9,8 @@
 namespace plisse {
 
 /// Sums an ElementEnergy and its derivatives over its elements, in parallel, with the same bits for any number of
-/// threads: elements are coloured once so that those of one colour share no vertex, and colours are added in turn.
+/// threads: elements are grouped and the groups coloured once, so that those of one colour share no vertex, and colours
+/// are added in turn.
 class ElementAssembly {
 public:
     /// Refers to the energy, which must outlive it; its elements and their vertices must not change.
@@ -19,16 +20,22 @@ public:
     double value(const Positions& x) const;
     /// Adds dW/dx, N; 3 x vertex_count.
     void add_gradient(const Positions& x, Positions& gradient) const;
-    /// Adds the Hessian, N/m, each element's projected when `project` is set.
+    /// Finds where the elements' blocks go in the system, which was made with pairs().
+    void place_in(const NewtonSystem& system);
+    /// Adds the Hessian, N/m, each element's projected when `project` is set, to the system of place_in.
     void add_hessian(const Positions& x, NewtonSystem& system, bool project = true) const;
 
     /// Pairs of vertices that share an element, lower first, ascending.
     std::vector<Edge> pairs() const;
-    const Coloring& coloring() const { return coloring_; }
 
 private:
+    template <typename Body>
+    void for_each_element(const Body& body) const;
+
     const ElementEnergy& energy_;
-    Coloring coloring_;
+    ColoredGroups groups_;
+    std::vector<int> block_numbers_;
+    std::vector<std::size_t> block_starts_; ///< of each element's in block_numbers_
 };
 
 } // namespace plisse

@@ -49,7 +49,7 @@ bool SparseCholesky::factorize(const NewtonSystem& system, double shift) {
     visit_upwards(elimination_.front_count(), [&](int front) {
         if (!definite)
             return;
-        assemble(front, system.values(), shift);
+        assemble(front, system.blocks(), shift);
         if (!eliminate(front))
             definite = false;
     });
@@ -207,18 +207,17 @@ void SparseCholesky::place_blocks(const NewtonSystem& system) {
     const auto for_each_block = [&](const auto& visit) {
         for (int c = 0; c < e.row_count(); ++c)
             for (int k = starts[at(c)]; k < starts[at(c) + 1]; ++k)
-                visit(c, k, position[at(c)], position[at(rows[at(k)])]);
+                visit(k, position[at(c)], position[at(rows[at(k)])]);
     };
     placement_starts_.assign(at(e.row_count()) + 1, 0);
-    for_each_block([&](int, int, int a, int b) { ++placement_starts_[at(std::min(a, b)) + 1]; });
+    for_each_block([&](int, int a, int b) { ++placement_starts_[at(std::min(a, b)) + 1]; });
     std::partial_sum(placement_starts_.begin(), placement_starts_.end(), placement_starts_.begin());
     placements_.resize(rows.size());
     std::vector<std::size_t> next(placement_starts_.begin(), placement_starts_.end() - 1);
-    for_each_block([&](int c, int k, int a, int b) {
+    for_each_block([&](int k, int a, int b) {
         const int pivot = std::min(a, b), f = front_of[at(pivot)];
-        const int start = starts[at(c)];
         const int column = row_in_front(f, pivot), row = row_in_front(f, std::max(a, b));
-        placements_[next[at(pivot)]++] = {9 * at(start) + 3 * at(k - start), 3 * (starts[at(c) + 1] - start), b < a,
+        placements_[next[at(pivot)]++] = {system.block_numbers()[at(k)], b < a,
                                           panel_starts_[at(f)] + 3 * at(column) * at(front_size(f)) + 3 * at(row)};
     });
 }
@@ -262,7 +261,7 @@ void SparseCholesky::lay_out_updates() {
 
 /// Gathers a front: the blocks of the system in its pivots' columns, and what its children leave. It goes by columns of
 /// blocks, each cleared and filled while it is in the cache. A leaf's update is left to eliminate().
-void SparseCholesky::assemble(int front, const std::vector<double>& values, double shift) {
+void SparseCholesky::assemble(int front, const std::vector<Mat3>& blocks, double shift) {
     const int size = front_size(front), reach = reach_size(front), pivots = size - reach;
     const auto& children = elimination_.children[at(front)];
     std::vector<std::size_t> taken(children.size(), 0); // columns of blocks of each child's update
@@ -275,7 +274,7 @@ void SparseCholesky::assemble(int front, const std::vector<double>& values, doub
         for (int b = 0; b < 3; ++b)
             std::fill_n(column + b * stride, size - row, 0.0);
         if (pivotal)
-            place_system_column(elimination_.first_pivot[at(front)] + row / 3, size, values);
+            place_system_column(elimination_.first_pivot[at(front)] + row / 3, size, blocks);
         for (int b = 0; pivotal && b < 3; ++b)
             column[b * (size + 1)] += shift;
         for (std::size_t c = 0; c < children.size(); ++c) {
@@ -287,12 +286,11 @@ void SparseCholesky::assemble(int front, const std::vector<double>& values, doub
 }
 
 /// Copies the system's blocks of one pivot into their places in the panel, whose columns are `size` apart.
-void SparseCholesky::place_system_column(int pivot, int size, const std::vector<double>& values) {
+void SparseCholesky::place_system_column(int pivot, int size, const std::vector<Mat3>& blocks) {
     for (std::size_t i = placement_starts_[at(pivot)]; i < placement_starts_[at(pivot) + 1]; ++i) {
         const Placement& placement = placements_[i];
-        const double* source = values.data() + placement.source;
-        const int across = placement.transposed ? 1 : placement.source_stride;
-        const int down = placement.transposed ? placement.source_stride : 1;
+        const double* source = blocks[at(placement.number)].data();
+        const int across = placement.transposed ? 1 : 3, down = placement.transposed ? 3 : 1;
         double* target = panels_.data() + placement.target;
         for (int b = 0; b < 3; ++b)
             for (int a = 0; a < 3; ++a)

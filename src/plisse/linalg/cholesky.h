@@ -30,8 +30,7 @@ public:
 private:
     /// Where a block of the system goes in the panel of its front.
     struct Placement {
-        std::size_t source; ///< of its first scalar in NewtonSystem::values
-        int source_stride;  ///< between its columns there
+        int number;         ///< in NewtonSystem::blocks
         bool transposed;    ///< it lies below the diagonal of the system and above that of the factor
         std::size_t target; ///< of its first scalar in panels_
     };
@@ -49,8 +48,8 @@ private:
     template <typename Visit>
     void visit_downwards(int front, const Visit& visit) const;
 
-    void assemble(int front, const std::vector<double>& values, double shift);
-    void place_system_column(int pivot, int size, const std::vector<double>& values);
+    void assemble(int front, const std::vector<Mat3>& blocks, double shift);
+    void place_system_column(int pivot, int size, const std::vector<Mat3>& blocks);
     void add_update_column(int child, std::size_t j, double* column, int stride);
     bool eliminate(int front);
 

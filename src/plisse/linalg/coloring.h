@@ -24,4 +24,21 @@ struct Coloring {
 Coloring color_elements(int element_count, int vertex_count,
                         const std::function<std::span<const int>(int)>& vertices_of);
 
+/// Elements in groups that lie together, the groups sorted by colour: whoever adds group by group stays in the cache,
+/// and waits for others a few times only.
+struct ColoredGroups {
+    std::vector<int> elements;        ///< by group
+    std::vector<int> group_starts{0}; ///< group g holds elements[group_starts[g]] .. elements[group_starts[g + 1] - 1]
+    Coloring coloring;                ///< of the groups, by the vertices of their elements
+    std::span<const int> group(int g) const {
+        const auto begin = static_cast<std::size_t>(group_starts[static_cast<std::size_t>(g)]);
+        const auto end = static_cast<std::size_t>(group_starts[static_cast<std::size_t>(g) + 1]);
+        return std::span(elements).subspan(begin, end - begin);
+    }
+};
+
+/// Groups of at most group_size elements, each grown from one element over shared vertices, the next one beside it.
+ColoredGroups color_groups(int element_count, int vertex_count, int group_size,
+                           const std::function<std::span<const int>(int)>& vertices_of);
+
 } // namespace plisse

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <iterator>
+#include <numeric>
+#include <utility>
 
 namespace plisse {
 
@@ -34,18 +36,32 @@ NewtonSystem::NewtonSystem(std::vector<std::uint8_t> prescribed, std::span<const
         vertex_of_row_.push_back(static_cast<int>(v));
         partly_prescribed_[v] = count > 0;
     }
-    for (int row = 0; row < row_count(); ++row)
-        base_keys_.push_back(block_key(row, row));
+    number_base_blocks(pairs);
+    set_extra_blocks({});
+}
+
+void NewtonSystem::number_base_blocks(std::span<const Edge> pairs) {
+    std::vector<std::pair<std::uint64_t, std::size_t>> keys; // with their places in the order asked for
     for (const Edge& pair : pairs) {
         const int a = row_of_vertex_[at(pair[0])];
         const int b = row_of_vertex_[at(pair[1])];
         if (a >= 0 && b >= 0)
-            base_keys_.push_back(block_key(std::max(a, b), std::min(a, b)));
+            keys.emplace_back(block_key(std::max(a, b), std::min(a, b)), keys.size());
     }
-    std::sort(base_keys_.begin(), base_keys_.end());
-    base_keys_.erase(std::unique(base_keys_.begin(), base_keys_.end()), base_keys_.end());
-    base_block_count_ = base_keys_.size();
-    set_pattern(base_keys_);
+    for (int row = 0; row < row_count(); ++row)
+        keys.emplace_back(block_key(row, row), keys.size());
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.first == b.first; }),
+               keys.end());
+    std::vector<std::pair<std::size_t, std::size_t>> places; // in the order asked for, and in the pattern
+    for (const auto& [key, place] : keys) {
+        places.emplace_back(place, base_keys_.size());
+        base_keys_.push_back(key);
+    }
+    std::sort(places.begin(), places.end());
+    base_numbers_.resize(places.size());
+    for (std::size_t number = 0; number < places.size(); ++number)
+        base_numbers_[places[number].second] = static_cast<int>(number);
 }
 
 void NewtonSystem::set_prescribed_step(const VecX& u) {
@@ -55,13 +71,13 @@ void NewtonSystem::set_prescribed_step(const VecX& u) {
 
 void NewtonSystem::begin(std::span<const Edge> extra_pairs) {
     reserve_pattern(extra_pairs);
-    std::fill(values_.begin(), values_.end(), 0.0);
+    std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero());
     coupling_.setZero(static_cast<Eigen::Index>(prescribed_.size()));
     for (int column = 0; column < row_count(); ++column) {
         const std::size_t vertex = at(vertex_of_row_[at(column)]);
         if (!partly_prescribed_[vertex])
             continue;
-        Values diagonal = values_of(column, column);
+        Mat3& diagonal = blocks_[at(number_of(column, column))];
         for (int a = 0; a < 3; ++a)
             if (prescribed_[3 * vertex + at(a)])
                 diagonal(a, a) = 1;
@@ -69,8 +85,8 @@ void NewtonSystem::begin(std::span<const Edge> extra_pairs) {
 }
 
 void NewtonSystem::reset_pattern() {
-    if (block_rows_.size() > base_block_count_)
-        set_pattern(base_keys_);
+    if (!extra_keys_.empty())
+        set_extra_blocks({});
 }
 
 void NewtonSystem::reserve_pattern(std::span<const Edge> extra_pairs) {
@@ -84,43 +100,50 @@ void NewtonSystem::reserve_pattern(std::span<const Edge> extra_pairs) {
         needed.push_back(block_key(std::max(a, b), std::min(a, b)));
         complete = complete && find_block(std::max(a, b), std::min(a, b)) >= 0;
     }
-    const std::size_t spare = block_rows_.size() - base_block_count_;
-    const bool wasteful = spare > base_block_count_ / 4 && spare > 3 * needed.size();
+    const bool wasteful = extra_keys_.size() > base_keys_.size() / 4 && extra_keys_.size() > 3 * needed.size();
     if (complete && !wasteful)
         return;
     std::sort(needed.begin(), needed.end());
     needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
-    std::vector<std::uint64_t> keys;
-    std::set_union(base_keys_.begin(), base_keys_.end(), needed.begin(), needed.end(), std::back_inserter(keys));
+    std::vector<std::uint64_t> extra;
+    std::set_difference(needed.begin(), needed.end(), base_keys_.begin(), base_keys_.end(), std::back_inserter(extra));
     if (!wasteful) {
         std::vector<std::uint64_t> grown;
-        const std::vector<std::uint64_t> present = pattern_keys();
-        std::set_union(keys.begin(), keys.end(), present.begin(), present.end(), std::back_inserter(grown));
-        keys = std::move(grown);
+        std::set_union(extra.begin(), extra.end(), extra_keys_.begin(), extra_keys_.end(), std::back_inserter(grown));
+        extra = std::move(grown);
     }
-    set_pattern(keys);
+    set_extra_blocks(std::move(extra));
 }
 
-std::vector<std::uint64_t> NewtonSystem::pattern_keys() const {
-    std::vector<std::uint64_t> keys;
-    keys.reserve(block_rows_.size());
-    for (int column = 0; column < row_count(); ++column)
-        for (int k = column_starts_[at(column)]; k < column_starts_[at(column) + 1]; ++k)
-            keys.push_back(block_key(block_rows_[at(k)], column));
-    return keys;
-}
-
-void NewtonSystem::set_pattern(const std::vector<std::uint64_t>& keys) {
+void NewtonSystem::set_extra_blocks(std::vector<std::uint64_t> keys) {
+    extra_keys_ = std::move(keys);
+    const std::size_t base = base_keys_.size(), count = base + extra_keys_.size();
     column_starts_.assign(at(row_count()) + 1, 0);
     block_rows_.clear();
-    for (std::uint64_t key : keys) {
+    block_numbers_.clear();
+    for (std::size_t b = 0, e = 0; b + e < count;) {
+        const bool is_base = e == extra_keys_.size() || (b < base && base_keys_[b] < extra_keys_[e]);
+        const std::uint64_t key = is_base ? base_keys_[b] : extra_keys_[e];
+        block_numbers_.push_back(is_base ? base_numbers_[b++] : static_cast<int>(base + e++));
         block_rows_.push_back(static_cast<int>(key & 0xffffffffU));
         ++column_starts_[at(static_cast<int>(key >> 32)) + 1];
     }
-    for (std::size_t c = 1; c < column_starts_.size(); ++c)
-        column_starts_[c] += column_starts_[c - 1];
-    values_.assign(9 * keys.size(), 0.0);
+    std::partial_sum(column_starts_.begin(), column_starts_.end(), column_starts_.begin());
+    blocks_.assign(count, Mat3::Zero());
     ++pattern_version_;
+}
+
+int NewtonSystem::base_block(int i, int j) const {
+    const int row = free_row_[at(i)], column = free_row_[at(j)];
+    if (row < 0 || column < 0)
+        return -1;
+    const auto found = std::lower_bound(base_keys_.begin(), base_keys_.end(), block_key(row, column));
+    assert(found != base_keys_.end() && *found == block_key(row, column) && "a pair the system was not made with");
+    return base_numbers_[static_cast<std::size_t>(found - base_keys_.begin())];
+}
+
+void NewtonSystem::append_base_blocks(std::span<const int> vertices, std::vector<int>& numbers) const {
+    for_each_lower_block(vertices, [&](int i, int j, int, int) { numbers.push_back(base_block(i, j)); });
 }
 
 void NewtonSystem::add_prescribed_block(int i, int j, const Mat3& block) {
@@ -131,16 +154,11 @@ void NewtonSystem::add_prescribed_block(int i, int j, const Mat3& block) {
     const int column = row_of_vertex_[at(j)];
     if (row < 0 || column < 0)
         return;
-    Values values = values_of(row, column);
+    Mat3& values = blocks_[at(number_of(row, column))];
     for (int b = 0; b < 3; ++b)
         for (int a = 0; a < 3; ++a)
             if (!(prescribed_[at(3 * i + a)] || prescribed_[at(3 * j + b)]))
                 values(a, b) += block(a, b);
-}
-
-Mat3 NewtonSystem::block(int i, int j) const {
-    const auto [start, stride] = place_of(row_of_vertex_[at(i)], row_of_vertex_[at(j)]);
-    return Eigen::Map<const Mat3, 0, Eigen::OuterStride<>>(values_.data() + start, stride);
 }
 
 VecX NewtonSystem::gather(const VecX& vertices) const {

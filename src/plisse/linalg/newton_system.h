@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <plisse/base/types.h>
@@ -14,12 +13,13 @@ namespace plisse {
 /// prescribed unknowns add to the right-hand side. Unknowns come in three kinds of vertices: free, prescribed in some
 /// axes, prescribed in all. The last kind has no row at all; prescribed axes of the second kind become unit rows.
 ///
-/// Use: set_prescribed_step(u), begin(extra blocks), add(...) for every element, then matrix and coupling() are ready.
-/// Blocks may be added from several threads as long as no two calls at a time share a vertex.
+/// Use: set_prescribed_step(u), begin(extra blocks), add blocks for every element, then matrix and coupling() are
+/// ready. Blocks may be added from several threads as long as no two calls at a time share a vertex.
 class NewtonSystem {
 public:
     NewtonSystem() = default;
-    /// prescribed: one flag per unknown (3 per vertex). pairs: the vertex pairs that elements always couple.
+    /// prescribed: one flag per unknown (3 per vertex). pairs: the vertex pairs that elements always couple, in the
+    /// order in which their blocks shall lie in memory; a vertex may pair with itself, and otherwise comes last.
     NewtonSystem(std::vector<std::uint8_t> prescribed, std::span<const Edge> pairs);
 
     int vertex_count() const { return static_cast<int>(row_of_vertex_.size()); }
@@ -39,35 +39,47 @@ public:
     /// Adds an element's matrix (3k x 3k, symmetric) over its k distinct vertices.
     template <typename Derived>
     void add(std::span<const int> vertices, const Eigen::MatrixBase<Derived>& element) {
-        for (std::size_t j = 0; j < vertices.size(); ++j)
-            for (std::size_t i = 0; i < vertices.size(); ++i)
-                if (vertices[i] >= vertices[j])
-                    add_block(vertices[i], vertices[j],
-                              element.template block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j)));
+        for_each_lower_block(vertices, [&](int i, int j, int local_i, int local_j) {
+            add_block(i, j, element.template block<3, 3>(3 * local_i, 3 * local_j));
+        });
     }
     /// Adds block (i, j), i >= j, and by symmetry its transpose at (j, i).
     template <typename Derived>
     void add_block(int i, int j, const Eigen::MatrixBase<Derived>& block) {
         const int row = free_row_[static_cast<std::size_t>(i)];
         const int column = free_row_[static_cast<std::size_t>(j)];
-        if (row >= 0 && column >= 0)
-            values_of(row, column) += block;
+        add_block_at(row >= 0 && column >= 0 ? number_of(row, column) : -1, i, j, block);
+    }
+
+    /// Number of block (i, j), i >= j, for add_block_at: who adds to it again and again searches for it once. It holds
+    /// for as long as the system lives; the pair is one that the system was made with. -1 where unknowns are
+    /// prescribed.
+    int base_block(int i, int j) const;
+    /// Appends the numbers of an element's blocks in the order in which the other `add` wants them.
+    void append_base_blocks(std::span<const int> vertices, std::vector<int>& numbers) const;
+    template <typename Derived>
+    void add_block_at(int number, int i, int j, const Eigen::MatrixBase<Derived>& block) {
+        if (number >= 0)
+            blocks_[static_cast<std::size_t>(number)] += block;
         else
             add_prescribed_block(i, j, block);
     }
-
-    /// Block (i, j) of the lower triangle, i >= j; both have rows and the pattern holds the block.
-    Mat3 block(int i, int j) const;
+    template <typename Derived>
+    void add(std::span<const int> vertices, const int* numbers, const Eigen::MatrixBase<Derived>& element) {
+        for_each_lower_block(vertices, [&](int i, int j, int local_i, int local_j) {
+            add_block_at(*numbers++, i, j, element.template block<3, 3>(3 * local_i, 3 * local_j));
+        });
+    }
 
     /// H u over all unknowns, 3 per vertex.
     const VecX& coupling() const { return coupling_; }
 
     /// Lower triangle in compressed columns of blocks: rows of column c are block_rows[column_starts[c] ...),
-    /// ascending, the diagonal first. The value of scalar (3r+a, 3c+b) of the k-th block of column c with m blocks lies
-    /// at values[9 * column_starts[c] + b * 3m + 3k + a]: that is the order of a scalar compressed-column matrix.
+    /// ascending, the diagonal first; the k-th block's value is blocks[block_numbers[k]].
     const std::vector<int>& column_starts() const { return column_starts_; }
     const std::vector<int>& block_rows() const { return block_rows_; }
-    const std::vector<double>& values() const { return values_; }
+    const std::vector<int>& block_numbers() const { return block_numbers_; }
+    const std::vector<Mat3>& blocks() const { return blocks_; }
     int pattern_version() const { return pattern_version_; }
 
     /// Copies the free part of an n-vertex vector into rows and back (prescribed scalars read and write zero).
@@ -75,14 +87,23 @@ public:
     VecX scatter(const VecX& rows) const;
 
 private:
+    /// Calls visit(i, j, local i, local j) for an element's blocks with i >= j, column by column.
+    template <typename Visit>
+    static void for_each_lower_block(std::span<const int> vertices, const Visit& visit) {
+        for (std::size_t j = 0; j < vertices.size(); ++j)
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                if (vertices[i] >= vertices[j])
+                    visit(vertices[i], vertices[j], static_cast<int>(i), static_cast<int>(j));
+    }
     /// One or both of the vertices are prescribed in some axes.
     void add_prescribed_block(int i, int j, const Mat3& block);
+    void number_base_blocks(std::span<const Edge> pairs);
     void reserve_pattern(std::span<const Edge> extra_pairs);
-    std::vector<std::uint64_t> pattern_keys() const;
-    void set_pattern(const std::vector<std::uint64_t>& keys);
-    using Values = Eigen::Map<Mat3, 0, Eigen::OuterStride<>>;
+    /// keys: of the blocks that extra pairs add, ascending.
+    void set_extra_blocks(std::vector<std::uint64_t> keys);
 
-    /// The block's number, counted without branches: columns are short, and a search would mispredict. -1 if none.
+    /// The block's place in the pattern, counted without branches: columns are short, and a search would mispredict. -1
+    /// if none.
     int find_block(int row, int column) const {
         const int begin = column_starts_[static_cast<std::size_t>(column)];
         const int end = column_starts_[static_cast<std::size_t>(column) + 1];
@@ -91,18 +112,10 @@ private:
             found += block_rows_[static_cast<std::size_t>(k)] < row;
         return found < end && block_rows_[static_cast<std::size_t>(found)] == row ? found : -1;
     }
-    /// Where the block's first scalar lies in values(), and how far apart its columns are.
-    std::pair<std::size_t, Eigen::OuterStride<>> place_of(int row, int column) const {
-        const int begin = column_starts_[static_cast<std::size_t>(column)];
-        const int end = column_starts_[static_cast<std::size_t>(column) + 1];
-        const int k = find_block(row, column);
-        assert(k >= 0 && "block outside the pattern: pass its pair to begin()");
-        return {9 * static_cast<std::size_t>(begin) + 3 * static_cast<std::size_t>(k - begin),
-                Eigen::OuterStride<>(3 * (end - begin))};
-    }
-    Values values_of(int row, int column) {
-        const auto [start, stride] = place_of(row, column);
-        return Values(values_.data() + start, stride);
+    int number_of(int row, int column) const {
+        const int place = find_block(row, column);
+        assert(place >= 0 && "block outside the pattern: pass its pair to begin()");
+        return block_numbers_[static_cast<std::size_t>(place)];
     }
 
     std::vector<std::uint8_t> prescribed_;
@@ -110,14 +123,15 @@ private:
     std::vector<int> free_row_;      ///< the same, also -1 where some are
     std::vector<int> vertex_of_row_;
     std::vector<std::uint8_t> partly_prescribed_; ///< per vertex
-    std::vector<std::uint64_t> base_keys_;
+    std::vector<std::uint64_t> base_keys_;        ///< ascending
+    std::vector<int> base_numbers_;               ///< of the blocks of base_keys_
+    std::vector<std::uint64_t> extra_keys_;       ///< ascending; numbered after those
     std::vector<int> column_starts_{0};
-    std::vector<int> block_rows_;
-    std::vector<double> values_;
+    std::vector<int> block_rows_, block_numbers_;
+    std::vector<Mat3> blocks_;
     VecX prescribed_step_;
     VecX coupling_;
     int pattern_version_ = 0;
-    std::size_t base_block_count_ = 0;
 };
 
 } // namespace plisse

@@ -107,6 +107,11 @@ void ShellEnergies::add_pressure_gradient(const Positions& y, Positions& gradien
         closed.assembly->add_gradient(y, gradient);
 }
 
+void ShellEnergies::place_in(const NewtonSystem& system) {
+    for (Term& term : elastic_)
+        term.assembly->place_in(system);
+}
+
 void ShellEnergies::add_hessian(const Positions& y, NewtonSystem& system, bool project) const {
     for (const Term& term : elastic_)
         term.assembly->add_hessian(y, system, project);

@@ -31,7 +31,10 @@ public:
     void add_elastic_gradient(const Positions& y, Positions& gradient) const;
     double pressure_value(const Positions& y) const;
     void add_pressure_gradient(const Positions& y, Positions& gradient) const;
-    /// Hessian of the elastic terms, projected element by element when `project` is set.
+    /// Finds where the elastic terms' blocks go in the system, which was made with pairs().
+    void place_in(const NewtonSystem& system);
+    /// Adds the Hessian of the elastic terms to the system of place_in, projected element by element when `project` is
+    /// set.
     void add_hessian(const Positions& y, NewtonSystem& system, bool project) const;
     std::vector<Edge> pairs() const;
 

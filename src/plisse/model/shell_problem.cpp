@@ -96,10 +96,10 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
             curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
                                                          ShellEnergies::Parts{true, !bending_on_level, false});
         else {
-            const std::vector<Edge> pairs = elasticity_->pairs();
+            carrier_->product = GalerkinProduct(carrier_->prolongation, elasticity_->pairs());
             carrier_->fine_hessian =
-                NewtonSystem(std::vector<std::uint8_t>(3 * at(carrier_->prolongation.fine_count()), 0), pairs);
-            carrier_->product = GalerkinProduct(carrier_->prolongation, pairs);
+                NewtonSystem(std::vector<std::uint8_t>(3 * at(carrier_->prolongation.fine_count()), 0),
+                             carrier_->product.fine_pairs());
         }
     } else {
         elasticity_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
@@ -145,6 +145,15 @@ void ShellProblem::build_system() {
         append(elasticity_->pairs());
     }
     system_ = NewtonSystem(discretization_.layout(level_).prescribed, pairs);
+
+    if (carrier_ && !curvature_) {
+        elasticity_->place_in(carrier_->fine_hessian);
+        carrier_->product.place_in(system_);
+    } else {
+        (curvature_ ? curvature_ : elasticity_)->place_in(system_);
+    }
+    if (level_bending_)
+        level_bending_->place_in(system_);
 }
 
 void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h) {

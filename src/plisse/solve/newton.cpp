@@ -37,8 +37,8 @@ void factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
     double shift = 0;
     while (!cholesky.factorize(system, shift)) {
         double largest = 0;
-        for (double value : system.values())
-            largest = std::max(largest, std::abs(value));
+        for (const Mat3& block : system.blocks())
+            largest = std::max(largest, block.cwiseAbs().maxCoeff());
         shift = std::max(1e-12 * largest, 10 * shift);
     }
 }

@@ -20,7 +20,7 @@ enum class ProlongationOperator {
 class Prolongation {
 public:
     /// d x_i / d (a, b, c), columns in the order of the coarse face's corners.
-    using Block = Eigen::Matrix<double, 3, 9>;
+    using Block = Eigen::Matrix<double, 3, 9, Eigen::RowMajor>;
 
     Prolongation() = default;
     /// One anchor for every column of fine_rest.
