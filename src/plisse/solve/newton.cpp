@@ -130,7 +130,7 @@ private:
                 exact_failures_ = 0;
                 return;
             }
-            exact_wait_ = std::min(1 << exact_failures_++, most_exact_wait);
+            exact_wait_ = std::min(2 << exact_failures_++, most_exact_wait);
         }
         exact_wait_ = std::max(0, exact_wait_ - 1);
         objective_.assemble(x_, system, true);
