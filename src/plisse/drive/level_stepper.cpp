@@ -66,17 +66,12 @@ void LevelStepper::begin_step(double t, double h, const VecX& anchor) {
 
 void LevelStepper::extrapolate(const VecX& motion) {
     const auto& prescribed = problem_.system().prescribed();
-    VecX script = VecX::Zero(x_.size());
+    VecX by_script = x_;
     VecX start = x_ + motion;
     for (Eigen::Index i = 0; i < x_.size(); ++i)
-        if (prescribed[static_cast<std::size_t>(i)]) {
-            start[i] = problem_.targets()[i];
-            script[i] = start[i] - x_[i];
-        }
-    if (problem_.max_step(x_, start - x_) < 1)
-        return;
-    const bool script_alone = problem_.max_step(x_, script) == 1;
-    if (!script_alone || problem_.value(start) < problem_.value(x_ + script))
+        if (prescribed[static_cast<std::size_t>(i)])
+            by_script[i] = start[i] = problem_.targets()[i];
+    if (problem_.max_step(x_, start - x_) == 1 && problem_.value(start) < problem_.value(by_script))
         x_ = start;
 }
 
