@@ -144,6 +144,9 @@ void ShellProblem::build_system() {
     } else {
         append(elasticity_->pairs());
     }
+    for (int v = 0; v < vertex_count(); ++v)
+        pairs.push_back({v, v});
+    std::sort(pairs.begin(), pairs.end()); // blocks of neighbours near each other
     system_ = NewtonSystem(discretization_.layout(level_).prescribed, pairs);
 
     if (carrier_ && !curvature_) {
