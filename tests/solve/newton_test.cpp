@@ -31,6 +31,7 @@ public:
     }
     /// Makes the Hessian this many times stiffer than it is.
     void exaggerate(double factor) { exaggeration_ = factor; }
+    int assemblies() const { return assemblies_; }
     void set_target(const Vec3& end) { targets_.tail<3>() = end; }
 
     double value(const VecX& x) override {
@@ -51,6 +52,7 @@ public:
         }
     }
     void assemble(const VecX& x, NewtonSystem& system, bool /*project*/) override {
+        ++assemblies_;
         system.begin({});
         for (int v = 0; v + 1 < n_; ++v) {
             const Vec3 edge = x.segment<3>(3 * v + 3) - x.segment<3>(3 * v);
@@ -83,6 +85,7 @@ private:
     int n_;
     double wall_;
     double exaggeration_ = 1;
+    int assemblies_ = 0;
     VecX targets_;
     NewtonSystem system_;
 };
@@ -117,6 +120,23 @@ TEST(Newton, LengthensStepsOfAHessianThatIsTooStiff) {
     EXPECT_LE(summary.iterations, 15); // full steps alone would leave 7/8 of the error each time
     for (int v = 0; v < 6; ++v)
         EXPECT_NEAR(x[3 * v], v, 1e-3);
+}
+
+TEST(Newton, KeepsItsFactorWhereTheHessianHardlyChanges) {
+    SpringChain chain(6);
+    chain.set_target(Vec3(7.5, 0, 0));
+    VecX x = chain.rest();
+    for (int v = 1; v < 5; ++v)
+        x[3 * v + 1] = 0.1 * v;
+    SparseCholesky cholesky;
+    Context context;
+    NewtonOptions options;
+    options.tolerance = 1e-10;
+    const NewtonSummary summary = minimize(chain, cholesky, x, options, context);
+    EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
+    EXPECT_LT(chain.assemblies(), summary.iterations); // one each, and one to see the end, without
+    for (int v = 0; v < 6; ++v)
+        EXPECT_LE((x.segment<3>(3 * v) - Vec3(1.5 * v, 0, 0)).norm(), 1e-9);
 }
 
 TEST(Newton, TakesNoStepAtRest) {

@@ -167,7 +167,7 @@ double relax_patch(ExpandingMesh& mesh, std::span<const int> free, double wanted
     VecX x = as_vector(local.x);
     NewtonOptions options;
     options.tolerance = 1e-3 * wanted_gap;
-    options.max_iterations = 20;
+    options.max_iterations = 30;
     double gap = 0;
     for (int round = 0; round < rounds; ++round) {
         minimize(problem, cholesky, x, options, context);

@@ -99,12 +99,23 @@ private:
         return u;
     }
 
+    /// Where the last step was taken in full, the last factor is tried first: a step with it that is a quarter of the
+    /// last one tells that H has hardly changed (simplified Newton correction, Deuflhard 2004).
     Direction newton_direction(const VecX& u) {
         objective_.gradient(x_, gradient_);
-        NewtonSystem& system = objective_.system();
-        system.set_prescribed_step(u);
-        factorize(system);
+        objective_.system().set_prescribed_step(u);
+        if (full_step_ && penalty_.share == 0 && factor_is_current_choice()) {
+            const Direction simplified = solve(u);
+            if (simplified.norm <= simplified_contraction * summary_.step_norm)
+                return chosen(simplified);
+        }
+        factorize(objective_.system());
+        return chosen(solve(u));
+    }
+
+    Direction solve(const VecX& u) {
         PhaseScope scope(context_.times, Phase::linear_solve);
+        const NewtonSystem& system = objective_.system();
         const VecX rhs = system.gather(-gradient_ - system.coupling());
         const VecX solution = cholesky_.solve(rhs);
         Direction direction;
@@ -114,9 +125,19 @@ private:
         // d.Hd = f.Hf + 2 f.Hu + u.Hu, and H f = rhs on the free rows.
         direction.curvature = rhs.dot(solution) + 2 * free_step.dot(system.coupling()) + u.dot(system.coupling());
         direction.norm = largest_nodal_norm(direction.d, &direction.worst_vertex);
+        return direction;
+    }
+
+    Direction chosen(Direction direction) {
         summary_.step_norm = direction.norm;
         summary_.worst_vertex = direction.worst_vertex;
         return direction;
+    }
+
+    /// Whether the factor at hand is of the Hessian that would be tried now, the exact or the projected one: the former
+    /// knows soft directions that the latter does not.
+    bool factor_is_current_choice() const {
+        return factor_ == Factor::exact || (factor_ == Factor::projected && exact_wait_ > 0);
     }
 
     /// Projection keeps H definite but too stiff wherever compression softens the shell, and steps then shrink by a
@@ -128,6 +149,7 @@ private:
             PhaseScope scope(context_.times, Phase::linear_solve);
             if (cholesky_.factorize(system)) {
                 exact_failures_ = 0;
+                factor_ = Factor::exact;
                 return;
             }
             exact_wait_ = std::min(2 << exact_failures_++, most_exact_wait);
@@ -136,6 +158,7 @@ private:
         objective_.assemble(x_, system, true);
         PhaseScope scope(context_.times, Phase::linear_solve);
         factorize_shifted(cholesky_, system);
+        factor_ = Factor::projected;
     }
 
     /// Converged, at the cap, or lost.
@@ -225,6 +248,8 @@ private:
     VecX gradient_, trial_;
     double value_ = 0, trial_value_ = 0;
     int short_steps_ = 0;
+    enum class Factor { none, exact, projected } factor_ = Factor::none;
+    static constexpr double simplified_contraction = 0.25;
     static constexpr int most_exact_wait = 8;
     static constexpr int most_script_halvings = 2;
     static constexpr double stiff_ratio = 1.5;
