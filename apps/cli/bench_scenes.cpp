@@ -10,14 +10,21 @@ namespace plisse {
 
 namespace {
 
+/// A mesh size with the hierarchy that was fastest for it (docs/decisions/0011).
+struct BenchSize {
+    double edge_length; ///< m
+    int levels, coarsest_vertices;
+};
+
 struct BenchScene {
     const char* name;
     const char* text;
-    double edge_length, quick_edge_length; ///< m
+    BenchSize full, quick;
 };
 
 constexpr BenchScene scenes[] = {
-    {"can", R"({
+    {"can",
+     R"({
   // The wall of a thin aluminium can, its rim pushed down and a little aside.
   "plisse": 1,
   "name": "can",
@@ -29,11 +36,13 @@ constexpr BenchScene scenes[] = {
      "motion": [{"t": 0}, {"t": 1, "translate": [0.001, -0.02, 0]}]}],
   "gravity": [0, 0, 0],
   "contact": {"distance": 5e-4},
-  "hierarchy": {"levels": 3, "coarsest_vertices": 400},
+  "hierarchy": {"bending_on": "level"},
   "solve": {"time_step": 0.05, "duration": 1}
 })",
-     0.0016, 0.0025},
-    {"twist", R"({
+     {0.0016, 2, 1500},
+     {0.0025, 3, 400}},
+    {"twist",
+     R"({
   // A cloth whose ends turn against each other.
   "plisse": 1,
   "name": "twist",
@@ -47,10 +56,11 @@ constexpr BenchScene scenes[] = {
      "motion": [{"t": 0}, {"t": 2, "rotate_deg": [-144, 0, 0]}]}],
   "gravity": [0, 0, 0],
   "contact": {"distance": 1e-3},
-  "hierarchy": {"levels": 3, "coarsest_vertices": 300},
+  "hierarchy": {"bending_on": "level"},
   "solve": {"time_step": 0.05, "duration": 2}
 })",
-     0.014, 0.025},
+     {0.014, 2, 1500},
+     {0.025, 3, 300}},
 };
 
 } // namespace
@@ -69,7 +79,10 @@ Scene bench_scene(const std::string& name, bool quick) {
         throw InputError("bench", "there is no benchmark \"" + name + "\"",
                          "the nearest is `plisse bench " + nearest_name(name, bench_names()) + "`");
     Scene scene = parse_scene("the benchmark " + name, found->text, {});
-    scene.bodies.front().mesh.generator.edge_length = quick ? found->quick_edge_length : found->edge_length;
+    const BenchSize& size = quick ? found->quick : found->full;
+    scene.bodies.front().mesh.generator.edge_length = size.edge_length;
+    scene.hierarchy.levels = size.levels;
+    scene.hierarchy.coarsest_vertices = size.coarsest_vertices;
     return scene;
 }
 

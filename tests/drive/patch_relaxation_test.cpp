@@ -37,6 +37,7 @@ double gap_at(const Discretization& discretization, int level, const Positions& 
     const HierarchyLevel& mesh = discretization.mesh(level);
     ContactOptions options;
     options.distance = contact_distance;
+    options.self = false;
     Contact contact(CollisionMesh(mesh.rest, mesh.faces, mesh.part, {0, 0}), options);
     return contact.min_gap(x);
 }
@@ -80,6 +81,25 @@ TEST(PatchRelaxation, RefinementOfSheetsAMicrometreApartNeedsItAndStaysSafe) {
         EXPECT_TRUE(intersecting_pairs(refined.positions, discretization.mesh(1).faces, {}).empty()) << gap;
         EXPECT_GT(gap_at(discretization, 1, refined.positions), gap);
     }
+}
+
+TEST(BatchMotion, LeavesRoomForTheBarrierWhereTheWayIsBlocked) {
+    Model model = two_sheets();
+    Handle pusher; // sends vertices of the upper sheet, which is at 0.1 m, to below the lower one
+    pusher.name = "pusher";
+    pusher.body = 1;
+    for (int v = model.bodies[1].vertices.begin; v < model.bodies[1].vertices.end; ++v)
+        if (model.mesh.positions(0, v) > 0)
+            pusher.vertices.push_back(v);
+    pusher.motion.translate.keys = {{0, Vec3::Zero()}, {1, Vec3(0, -0.12, 0)}};
+    model.handles.push_back(pusher);
+    Context context;
+    const Discretization discretization(model, 2, context);
+    const RefineResult refined =
+        refine(discretization, 0, pressed_together(discretization, 3 * contact_distance), 1, context);
+    ASSERT_TRUE(refined.complete) << refined.message;
+    EXPECT_LT(gap_at(discretization, 1, refined.positions), contact_distance);
+    EXPECT_GT(gap_at(discretization, 1, refined.positions), 0.25 * contact_distance);
 }
 
 } // namespace

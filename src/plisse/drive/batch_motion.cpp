@@ -127,6 +127,12 @@ Stencil gather(const std::array<int, 4>& vertices, const auto& column) {
     return stencil;
 }
 
+/// How much of its distance a pair keeps while it moves: less than half of the reference gap would start the solver
+/// where the barrier is so stiff that it cuts step after step.
+double kept_gap(double distance, double reference_gap) {
+    return std::min(0.9 * distance, std::max(0.1 * distance, 0.5 * reference_gap));
+}
+
 /// Advances one cluster until every vertex has arrived or is stopped; returns how many were stopped.
 int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const Collapse*>& batch,
             double reference_gap) {
@@ -139,7 +145,11 @@ int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const
         return found == remaining.end() ? Vec3::Zero() : found->second;
     };
     int stopped = 0;
-    std::vector<double> limits(cluster.pairs.size());
+    std::vector<double> limits(cluster.pairs.size()), references;
+    for (const MovingPair& pair : cluster.pairs) { // what is near at rest may come as near again
+        const Stencil rest = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.rest().col(v); });
+        references.push_back(std::min(reference_gap, std::sqrt(squared_distance(pair.kind, rest))));
+    }
     for (;;) {
         double least = 1;
         for (std::size_t p = 0; p < cluster.pairs.size(); ++p) {
@@ -150,8 +160,7 @@ int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const
                 continue;
             const Stencil x = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.position(v); });
             const double distance = std::sqrt(separate(pair.kind, x).squared_distance);
-            const double kept = distance < 0.1 * reference_gap ? 0.9 : 0.1;
-            limits[p] = safe_step(pair.kind, x, d, kept * distance);
+            limits[p] = safe_step(pair.kind, x, d, kept_gap(distance, references[p]));
             least = std::min(least, limits[p]);
         }
         for (auto& [v, d] : remaining) {

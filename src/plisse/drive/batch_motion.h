@@ -5,7 +5,7 @@
 namespace plisse {
 
 struct BatchMotionOptions {
-    double reference_gap = 1e-3; ///< m: pairs well below it keep nearly all of their distance (PSQ algorithm 4)
+    double reference_gap = 1e-3; ///< m: pairs approach to half of it, and nearer ones hardly (PSQ algorithm 4)
     double least_gap = 1e-6;     ///< m: nearer pairs afterwards are reported
 };
 

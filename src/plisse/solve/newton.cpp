@@ -99,7 +99,7 @@ private:
         return u;
     }
 
-    /// Where the last step was taken in full, the last factor is tried first: a step with it that is a quarter of the
+    /// Where the last step was taken in full, the last factor is tried first: a step with it that is half of the
     /// last one tells that H has hardly changed (simplified Newton correction, Deuflhard 2004).
     Direction newton_direction(const VecX& u) {
         objective_.gradient(x_, gradient_);
@@ -249,7 +249,7 @@ private:
     double value_ = 0, trial_value_ = 0;
     int short_steps_ = 0;
     enum class Factor { none, exact, projected } factor_ = Factor::none;
-    static constexpr double simplified_contraction = 0.25;
+    static constexpr double simplified_contraction = 0.5;
     static constexpr int most_exact_wait = 8;
     static constexpr int most_script_halvings = 2;
     static constexpr double stiff_ratio = 1.5;
