@@ -156,7 +156,10 @@ TEST_F(BuildModel, SaysWhatWasChangedOnTheWay) {
 
 TEST_F(BuildModel, TakesSettingsOver) {
     const Model m = build(R"("name": "n", "bodies": [{"mesh": "square.obj", "rest": "flat-angles", "pressure": 7}],
-        "gravity": [1, 2, 3], "contact": {"distance": 0.01, "self": false}, "hierarchy": {"levels": 2},
+        "gravity": [1, 2, 3], "contact": {"distance": 0.01, "self": false, "friction": 0.3, "friction_velocity": 0.02,
+            "pairs": [{"a": "ground", "b": "body-0", "friction": 0.6}]},
+        "obstacles": [{"name": "ground", "mesh": {"generate": "sheet", "size": [9, 9], "cells": [1, 1], "pattern": "regular"},
+            "transform": {"translate": [0, -3, 0]}}], "hierarchy": {"levels": 2},
         "solve": {"duration": 4})");
     EXPECT_EQ(m.name, "n");
     EXPECT_TRUE(m.bodies[0].flat_rest_angles);
@@ -164,6 +167,12 @@ TEST_F(BuildModel, TakesSettingsOver) {
     EXPECT_EQ(m.gravity.at(0), Vec3(1, 2, 3));
     EXPECT_EQ(m.contact.distance, 0.01);
     EXPECT_FALSE(m.contact.self);
+    EXPECT_EQ(m.contact.friction, 0.3);
+    EXPECT_EQ(m.contact.friction_velocity, 0.02);
+    ASSERT_EQ(m.contact.pairs.size(), 1u);
+    EXPECT_EQ(m.contact.pairs[0].a, 1);
+    EXPECT_EQ(m.contact.pairs[0].b, 0);
+    EXPECT_EQ(m.contact.pairs[0].friction, 0.6);
     EXPECT_EQ(m.hierarchy.levels, 2);
     EXPECT_EQ(m.solve.duration, 4);
 }

@@ -78,9 +78,10 @@ void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int b
             chunk.least_gap_squared = std::min(chunk.least_gap_squared, separation.squared_distance);
         if (separation.squared_distance >= activation * activation)
             continue;
-        const PairParameters pair = parameters(kind, candidates.primitives(kind, i), activation);
+        const std::array<int, 2> primitives = candidates.primitives(kind, i);
+        const PairParameters pair = parameters(kind, primitives, activation);
         chunk.energy += pair_energy(pair, separation, stencil);
-        chunk.pairs.push_back({vertices, pair, separation});
+        chunk.pairs.push_back({kind, primitives, vertices, pair, separation});
     }
 }
 

@@ -8,13 +8,6 @@
 
 namespace plisse {
 
-/// A pair of primitives nearer than its activation distance.
-struct ActivePair {
-    std::array<int, 4> vertices;
-    PairParameters parameters;
-    Separation separation;
-};
-
 /// The pairs that repel at one set of positions, with their energy.
 class ActiveSet {
 public:

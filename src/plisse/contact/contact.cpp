@@ -221,10 +221,14 @@ double Contact::min_gap(const Positions& x) {
     return state_->active.least_gap();
 }
 
-int Contact::active_pair_count(const Positions& x) {
+const std::vector<ActivePair>& Contact::active_pairs(const Positions& x) {
     const PhaseScope scope(*state_->times, Phase::contact);
     state_->evaluate(x);
-    return static_cast<int>(state_->active.pairs().size());
+    return state_->active.pairs();
+}
+
+int Contact::active_pair_count(const Positions& x) {
+    return static_cast<int>(active_pairs(x).size());
 }
 
 } // namespace plisse

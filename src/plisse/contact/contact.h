@@ -4,6 +4,8 @@
 
 #include <plisse/base/context.h>
 #include <plisse/contact/collision_mesh.h>
+#include <plisse/contact/pair_energy.h>
+#include <plisse/geometry/ccd.h>
 #include <plisse/linalg/newton_system.h>
 
 namespace plisse {
@@ -17,6 +19,15 @@ struct ContactOptions {
     bool self = true;       ///< whether a body meets itself (different bodies always meet)
     double ccd_ratio = 0.1; ///< in (0, 1): share of its distance a pair keeps in one step at least
     HessianKind hessian = HessianKind::projected;
+};
+
+/// A pair of primitives nearer than its activation distance.
+struct ActivePair {
+    StencilKind kind;
+    std::array<int, 2> primitives; ///< vertex and face, or edge and edge
+    std::array<int, 4> vertices;
+    PairParameters parameters;
+    Separation separation;
 };
 
 /// Barrier contact of one collision mesh (C-IPC, Li et al. 2021): energy, derivatives, and the largest step that keeps
@@ -52,7 +63,8 @@ public:
     /// the contact distance only; infinity when there is none.
     double min_gap(const Positions& x);
 
-    /// Whether any pair is active at x.
+    /// The pairs that repel at x.
+    const std::vector<ActivePair>& active_pairs(const Positions& x);
     int active_pair_count(const Positions& x);
 
     /// Broad phase, CCD and evaluation seconds are added here; may be null.

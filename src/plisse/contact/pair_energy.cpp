@@ -101,6 +101,11 @@ double pair_energy(const PairParameters& parameters, const Separation& separatio
     return mollifier_of(parameters, x).value * scaled_barrier(parameters, separation.squared_distance).value;
 }
 
+double pair_normal_force(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
+    return -2 * std::sqrt(separation.squared_distance) * mollifier_of(parameters, x).value *
+           scaled_barrier(parameters, separation.squared_distance).first;
+}
+
 Vec12 pair_gradient(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
     const Mollifier m = mollifier_of(parameters, x);

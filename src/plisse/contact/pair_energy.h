@@ -15,6 +15,9 @@ struct PairParameters {
 /// the mollifier m and the barrier b. J.
 double pair_energy(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
+/// How hard the two primitives press each other apart, -dE/dd with the distance d of `separation`. N.
+double pair_normal_force(const PairParameters& parameters, const Separation& separation, const Stencil& x);
+
 /// dE/dX in the order of the stencil, N.
 Vec12 pair_gradient(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 

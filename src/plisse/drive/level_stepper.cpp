@@ -14,6 +14,7 @@ namespace {
 constexpr double largest_residual = 1e-3; // of the largest nodal force of any one term (CONTRACT.md)
 constexpr int preview_iteration_cap = 20;
 constexpr int final_iteration_cap = 1000;
+constexpr int most_friction_updates = 30; // of the normal forces, in one step
 
 LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     switch (summary.end) {
@@ -43,7 +44,7 @@ LevelStepper::LevelStepper(const Discretization& discretization, int level, Ener
 void LevelStepper::start_from(const Checkpoint& progress) {
     progress_ = progress;
     x_ = as_vector(progress.positions);
-    problem_.begin_step(progress.positions, progress.positions, progress.t, settings_.time_step);
+    problem_.begin_settling_step(progress.positions, progress.t, settings_.time_step, progress.friction);
 }
 
 int LevelStepper::iteration_cap() const {
@@ -58,10 +59,15 @@ double LevelStepper::fraction(std::string_view phase) const {
                            std::max(1.0, double(timeline_steps(settings_.duration, settings_.time_step))));
 }
 
+// Forgetting the ordering here and below makes a resumed run take the same steps, to the bit, as an uninterrupted one.
 void LevelStepper::begin_step(double t, double h, const VecX& anchor) {
-    // Forgetting the ordering here makes a resumed run take the same steps, to the bit, as an uninterrupted one.
     cholesky_.reset();
-    problem_.begin_step(as_positions(x_), as_positions(anchor), t, h);
+    problem_.begin_step(as_positions(x_), as_positions(anchor), t, h, progress_.friction.reference.cols() == 0);
+}
+
+void LevelStepper::begin_settling_step(double t, double h) {
+    cholesky_.reset();
+    problem_.begin_settling_step(as_positions(x_), t, h, progress_.friction);
 }
 
 void LevelStepper::extrapolate(const VecX& motion) {
@@ -97,11 +103,30 @@ NewtonSummary LevelStepper::solve_step(double t, double tolerance, const char* p
             log_.iteration({level_, shown.step, iteration.iteration, t, iteration.value, shown.step_norm, shown.gap,
                             log_.seconds(), iteration.step_length});
         });
-    ++report.steps;
     report.newton_iterations += summary.iterations;
     if (summary.end == NewtonEnd::stalled)
         log_.context().on_message(fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message));
     return summary;
+}
+
+NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const char* phase, int most_iterations) {
+    bool gripped = problem_.friction_grips();
+    NewtonSummary whole = solve_step(t, tolerance, phase, most_iterations);
+    NewtonSummary part = whole;
+    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_); ++update) {
+        if (part.iterations == 0 && !gripped)
+            break;
+        gripped = false;
+        if (update == most_friction_updates || whole.iterations == most_iterations) {
+            whole.end = NewtonEnd::iteration_cap;
+            break;
+        }
+        part = solve_step(t, tolerance, phase, most_iterations - whole.iterations);
+        whole.end = part.end;
+        whole.iterations += part.iterations;
+    }
+    ++log_.level_report(level_).steps;
+    return whole;
 }
 
 LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
@@ -118,12 +143,13 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
             progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
         begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
         extrapolate(motion);
-        const NewtonSummary summary = solve_step(t, settings_.tolerance, "preview", iteration_cap());
+        const NewtonSummary summary = solve_rubbing_step(t, settings_.tolerance, "preview", iteration_cap());
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
         }
         progress_.velocity = as_positions(VecX((x_ - before) / h));
+        progress_.friction = problem_.friction_memory();
         worst = std::max(worst, outcome_of(summary));
         ++progress_.step;
         const double interval = settings_.frame_interval;
@@ -137,7 +163,9 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
 LevelStepper::Outcome LevelStepper::step_once(double t) {
     const VecX before = x_;
     begin_step(t, settings_.time_step, x_);
-    const NewtonSummary summary = solve_step(t, settings_.tolerance, is_last_ ? "final" : "refine", iteration_cap());
+    const NewtonSummary summary =
+        solve_rubbing_step(t, settings_.tolerance, is_last_ ? "final" : "refine", iteration_cap());
+    progress_.friction = problem_.friction_memory();
     if (summary.end == NewtonEnd::cancelled)
         x_ = before;
     return outcome_of(summary);
@@ -151,13 +179,17 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
         const double h = progress_.settle_time_step;
         // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short.
         const int most = std::min(iteration_cap(), preview_iteration_cap);
-        begin_step(t, h, x_);
-        const NewtonSummary summary = solve_step(t, progress_.settle_tolerance, "settle", most);
+        begin_settling_step(t, h);
+        const NewtonSummary summary = solve_rubbing_step(t, progress_.settle_tolerance, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
         }
         ++progress_.settle_step;
+        if (summary.end == NewtonEnd::converged) { // else contacts may be on a way that they have yet to take back
+            problem_.remember_friction(x_);
+            progress_.friction = problem_.friction_memory();
+        }
         const bool at_rest = summary.end == NewtonEnd::converged && summary.iterations == 0;
         if (at_rest && problem_.residual(x_) <= largest_residual) {
             report.equilibrium = true;
@@ -184,7 +216,7 @@ void LevelStepper::save_checkpoint(double t) {
 void LevelStepper::measure() {
     LevelReport& report = log_.level_report(level_);
     const EnergyBreakdown energies = problem_.energies(x_);
-    report.energy = {energies.elastic, energies.contact, 0, energies.gravity, energies.loads};
+    report.energy = {energies.elastic, energies.contact, energies.friction, energies.gravity, energies.loads};
     report.residual = problem_.residual(x_);
     report.min_gap = problem_.min_gap(x_);
     report.max_stretch = problem_.max_stretch(x_);

@@ -38,10 +38,13 @@ public:
 
 private:
     void begin_step(double t, double h, const VecX& anchor);
+    void begin_settling_step(double t, double h);
     /// Starts the step where the last step's motion leads, with scripts fulfilled, unless something is in the way or
     /// the script alone leads to a lower value.
     void extrapolate(const VecX& motion);
     NewtonSummary solve_step(double t, double tolerance, const char* phase, int most_iterations);
+    /// The same, and again for as long as the normal forces that friction goes by change what it finds.
+    NewtonSummary solve_rubbing_step(double t, double tolerance, const char* phase, int most_iterations);
     void save_checkpoint(double t);
     int iteration_cap() const;
     double fraction(std::string_view phase) const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <plisse/base/context.h>
+#include <plisse/contact/friction.h>
 #include <plisse/decimate/hierarchy.h>
 
 namespace plisse {
@@ -84,6 +85,7 @@ struct Checkpoint {
     double t = 0;                   ///< s
     Positions positions;            ///< of the level's vertices, exact
     Positions velocity;             ///< m/s, of the same vertices, in the last step of the timeline; empty before it
+    FrictionMemory friction;        ///< of the level's contacts
     std::vector<int> frame_numbers; ///< next frame number per level
     RunReport report;
 };

@@ -61,8 +61,16 @@ struct Load {
 };
 
 struct ContactSettings {
+    /// Coulomb's coefficient between two parts, or within one.
+    struct Pair {
+        int a = 0, b = 0; ///< bodies, or obstacles after the bodies
+        double friction = 0;
+    };
     double distance = 1e-3; ///< m, > 0
     bool self = true;
+    double friction = 0;             ///< Coulomb's coefficient of pairs not listed, >= 0
+    double friction_velocity = 1e-3; ///< m/s, > 0: contacts that slide more slowly stick
+    std::vector<Pair> pairs;
 };
 
 enum class BendingOn { finest, level };

@@ -17,6 +17,7 @@ std::size_t at(int index) {
 }
 
 constexpr int chunk_size = 512;
+constexpr double first_grip = 10; // of contacts whose normal forces are not known yet
 
 /// Largest fraction of the motion over which no triangle comes near collapsing.
 double largest_regular_step(const std::vector<Face>& faces, const Positions& x, const Positions& d) {
@@ -50,6 +51,15 @@ double contact_stiffness(const Model& model) {
             std::max(stiffness, std::min(30 * material.youngs_modulus * material.thickness / size, bulk_modulus));
     }
     return stiffness;
+}
+
+/// Coulomb's coefficients of all pairs of parts, row by row.
+std::vector<double> friction_coefficients(const Model& model) {
+    const std::size_t parts = at(model.part_count());
+    std::vector<double> coefficients(parts * parts, model.contact.friction);
+    for (const ContactSettings::Pair& pair : model.contact.pairs)
+        coefficients[at(pair.a) * parts + at(pair.b)] = coefficients[at(pair.b) * parts + at(pair.a)] = pair.friction;
+    return coefficients;
 }
 
 double largest_norm(const Positions& forces) {
@@ -115,6 +125,9 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     options.stiffness = contact_stiffness(model);
     contact_ = std::make_unique<Contact>(CollisionMesh(mesh.rest, mesh.faces, mesh.part, obstacle), options);
     contact_->set_times(&context.times);
+    friction_ = std::make_unique<Friction>(
+        contact_->mesh(),
+        FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model)});
     build_system();
 
     double elastic_scale = 0;
@@ -159,7 +172,39 @@ void ShellProblem::build_system() {
         level_bending_->place_in(system_);
 }
 
-void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h) {
+void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h, bool is_first) {
+    set_step(current, anchor, t, h);
+    begin_friction(current, {current, {}, false}, is_first);
+}
+
+void ShellProblem::begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory) {
+    set_step(current, current, t, h);
+    begin_friction(current, memory, memory.reference.cols() == 0);
+}
+
+void ShellProblem::begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first) {
+    if (!friction_->possible())
+        return;
+    friction_->begin(memory);
+    friction_->lag(contact_->active_pairs(current), current, is_first ? first_grip : 1);
+}
+
+void ShellProblem::remember_friction(const VecX& x) {
+    if (!friction_->possible())
+        return;
+    const Positions& points = level_positions(x);
+    friction_->remember(contact_->active_pairs(points), points);
+}
+
+bool ShellProblem::update_friction(const VecX& x) {
+    if (!friction_->possible())
+        return false;
+    const Positions& points = level_positions(x);
+    friction_->lag(contact_->active_pairs(points), points);
+    return true;
+}
+
+void ShellProblem::set_step(const Positions& current, const Positions& anchor, double t, double h) {
     targets_ = as_vector(discretization_.script(level_, t));
     anchor_ = anchor;
     inverse_h_squared_ = 1 / (h * h);
@@ -209,7 +254,8 @@ double ShellProblem::value(const VecX& x) {
     double inertia = 0;
     for (int v = 0; v < points.cols(); ++v)
         inertia += mass_[v] * (points.col(v) - anchor_.col(v)).squaredNorm();
-    return parts.elastic + parts.contact + parts.gravity + parts.loads + 0.5 * inverse_h_squared_ * inertia;
+    return parts.elastic + parts.contact + parts.friction + parts.gravity + parts.loads +
+           0.5 * inverse_h_squared_ * inertia;
 }
 
 EnergyBreakdown ShellProblem::energies(const VecX& x) {
@@ -223,8 +269,12 @@ EnergyBreakdown ShellProblem::energies(const VecX& x) {
         if (level_bending_)
             parts.elastic += level_bending_->elastic_value(x_memo_);
     }
-    if (std::isfinite(parts.elastic))
-        parts.contact = contact_->value(level_positions(x));
+    if (!std::isfinite(parts.elastic))
+        return parts;
+    const Positions& points = level_positions(x);
+    parts.contact = contact_->value(points);
+    PhaseScope scope(context_.times, Phase::contact);
+    parts.friction = friction_->value(points);
     return parts;
 }
 
@@ -244,6 +294,8 @@ void ShellProblem::gradient(const VecX& x, VecX& gradient) {
             sum.col(v) += inverse_h_squared_ * mass_[v] * (points.col(v) - anchor_.col(v));
     }
     contact_->add_gradient(points, sum);
+    PhaseScope scope(context_.times, Phase::contact);
+    friction_->add_gradient(points, sum);
     gradient = as_vector(sum);
 }
 
@@ -264,12 +316,22 @@ NodalForces ShellProblem::forces(const VecX& x) {
     result.contact = Positions::Zero(3, vertex_count());
     contact_->add_gradient(points, result.contact);
     result.contact *= -1;
+    result.friction = Positions::Zero(3, vertex_count());
+    friction_->add_gradient(points, result.friction);
+    result.friction *= -1;
     return result;
+}
+
+std::vector<Edge> ShellProblem::coupled_pairs(const Positions& points) {
+    std::vector<Edge> pairs = contact_->coupled_pairs(points);
+    PhaseScope scope(context_.times, Phase::contact);
+    friction_->append_coupled_pairs(pairs);
+    return pairs;
 }
 
 void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
     const Positions& points = level_positions(x);
-    system.begin(contact_->coupled_pairs(points));
+    system.begin(coupled_pairs(points));
     {
         PhaseScope scope(context_.times, Phase::elastic);
         for (int v = 0; v < points.cols(); ++v)
@@ -287,6 +349,8 @@ void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
             level_bending_->add_hessian(points, system, project);
     }
     contact_->add_hessian(points, system, project);
+    PhaseScope scope(context_.times, Phase::contact);
+    friction_->add_hessian(points, system);
 }
 
 double ShellProblem::max_step(const VecX& x, const VecX& d) {
@@ -312,8 +376,9 @@ double ShellProblem::residual(const VecX& x) {
         if (prescribed[static_cast<std::size_t>(i)])
             total.data()[i] = 0;
     const double largest_total = largest_norm(total);
-    const double largest_term = std::max({largest_norm(nodal.elastic), largest_norm(nodal.contact),
-                                          largest_norm(nodal.gravity), largest_norm(nodal.loads)});
+    const double largest_term =
+        std::max({largest_norm(nodal.elastic), largest_norm(nodal.contact), largest_norm(nodal.friction),
+                  largest_norm(nodal.gravity), largest_norm(nodal.loads)});
     return largest_total <= force_round_off_ ? 0.0 : largest_total / largest_term;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <plisse/contact/contact.h>
+#include <plisse/contact/friction.h>
 #include <plisse/model/dead_loads.h>
 #include <plisse/model/shell_energies.h>
 #include <plisse/solve/objective.h>
@@ -19,16 +20,16 @@ enum class EnergiesOf {
 
 /// Forces per vertex of the level by term (N, the negative gradients).
 struct NodalForces {
-    Positions elastic, contact, gravity, loads;
-    Positions total() const { return elastic + contact + gravity + loads; }
+    Positions elastic, contact, friction, gravity, loads;
+    Positions total() const { return elastic + contact + friction + gravity + loads; }
 };
 
 struct EnergyBreakdown {
-    double elastic = 0, contact = 0, gravity = 0, loads = 0;
+    double elastic = 0, contact = 0, friction = 0, gravity = 0, loads = 0;
 };
 
-/// F_l of PSQ equations 2 and 3 as an Objective: barrier contact and inertia on level l's mesh, elasticity and loads on
-/// the finest mesh through the direct prolongation P^l (or on level l itself), over one time step.
+/// F_l of PSQ equations 2 and 3 as an Objective: barrier contact, friction and inertia on level l's mesh, elasticity
+/// and loads on the finest mesh through the direct prolongation P^l (or on level l itself), over one time step.
 class ShellProblem : public Objective {
 public:
     /// The discretization must outlive the problem.
@@ -39,8 +40,18 @@ public:
     int vertex_count() const { return static_cast<int>(mass_.size()); }
 
     /// Starts the step to time t: inertia 1/(2 h^2) |x - anchor|_M^2, loads and scripts at t, directions of follower
-    /// pressure frozen at `current`.
-    void begin_step(const Positions& current, const Positions& anchor, double t, double h);
+    /// pressure frozen at `current`. Contacts slide relative to `current`; in a first step, for which normal forces
+    /// have yet to build up, they grip until update_friction().
+    void begin_step(const Positions& current, const Positions& anchor, double t, double h, bool is_first = false);
+    /// Starts a step of settling: the same with inertia about `current`, and contacts that carry on what they remember,
+    /// or grip where nothing has come before.
+    void begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory);
+    /// What contacts remember of the step begun last, and that it ends at x, where it has come to rest.
+    const FrictionMemory& friction_memory() const { return friction_->memory(); }
+    void remember_friction(const VecX& x);
+    bool friction_grips() const { return friction_->possible() && friction_->grips(); }
+    /// Brings the normal forces that friction goes by up to x. False where nothing can rub.
+    bool update_friction(const VecX& x);
 
     double value(const VecX& x) override;
     double round_off() const override { return value_round_off_; }
@@ -69,6 +80,9 @@ private:
     Positions pull_back(const VecX& x, const Positions& carried_gradient);
     bool uses_galerkin() const;
     void build_system();
+    void set_step(const Positions& current, const Positions& anchor, double t, double h);
+    void begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first);
+    std::vector<Edge> coupled_pairs(const Positions& points);
 
     const Discretization& discretization_;
     Context& context_;
@@ -80,6 +94,7 @@ private:
     std::unique_ptr<ShellEnergies> level_bending_; ///< when bending_on is level
     std::unique_ptr<ShellEnergies> curvature_;     ///< the level's own Hessian, when curvature is own
     std::unique_ptr<Contact> contact_;
+    std::unique_ptr<Friction> friction_;
     NewtonSystem system_;
 
     VecX targets_;

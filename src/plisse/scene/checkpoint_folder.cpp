@@ -19,8 +19,72 @@ std::string state_file_name(int number) {
     return fmt::format("state-{}.bin", number);
 }
 
-std::string_view bytes_of(const Positions& x) {
-    return {reinterpret_cast<const char*>(x.data()), static_cast<std::size_t>(x.size()) * sizeof(double)};
+/// The arrays of a checkpoint's state, as its file holds them one after another.
+struct State {
+    Positions positions, velocity, friction_reference, slipped;
+    Eigen::Matrix<int, 3, Eigen::Dynamic> rubbing; ///< kind and primitives
+
+    template <typename Visit>
+    void for_each(const Visit& visit) {
+        visit(positions);
+        visit(velocity);
+        visit(friction_reference);
+        visit(slipped);
+        visit(rubbing);
+    }
+};
+
+State state_of(const Checkpoint& c) {
+    State state{c.positions, c.velocity, c.friction.reference, {}, {}};
+    const auto pairs = static_cast<Eigen::Index>(c.friction.pairs.size());
+    state.slipped.resize(3, pairs);
+    state.rubbing.resize(3, pairs);
+    for (Eigen::Index p = 0; p < pairs; ++p) {
+        const RubbingPair& pair = c.friction.pairs[static_cast<std::size_t>(p)];
+        state.slipped.col(p) = pair.slipped;
+        state.rubbing.col(p) << static_cast<int>(pair.kind), pair.primitives[0], pair.primitives[1];
+    }
+    return state;
+}
+
+void restore(State state, Checkpoint& c) {
+    for (Eigen::Index p = 0; p < state.rubbing.cols(); ++p)
+        c.friction.pairs.push_back({static_cast<StencilKind>(state.rubbing(0, p)),
+                                    {state.rubbing(1, p), state.rubbing(2, p)},
+                                    state.slipped.col(p)});
+    c.positions = std::move(state.positions);
+    c.velocity = std::move(state.velocity);
+    c.friction.reference = std::move(state.friction_reference);
+}
+
+std::string bytes_of(State state) {
+    std::string bytes;
+    state.for_each([&](const auto& array) {
+        if (array.size() > 0)
+            bytes.append(reinterpret_cast<const char*>(array.data()),
+                         static_cast<std::size_t>(array.size()) * sizeof(*array.data()));
+    });
+    return bytes;
+}
+
+/// Arrays of the sizes that the manifest says, filled in turn. Nothing when the bytes are not as many.
+std::optional<State> state_from(std::string_view bytes, const Json& manifest) {
+    State state;
+    state.positions.resize(3, manifest.at("vertices").get<int>());
+    state.velocity.resize(3, manifest.at("velocities").get<int>());
+    state.friction_reference.resize(3, manifest.at("friction_references").get<int>());
+    state.slipped.resize(3, manifest.at("rubbing_pairs").get<int>());
+    state.rubbing.resize(3, state.slipped.cols());
+    bool complete = true;
+    state.for_each([&](auto& array) {
+        const std::size_t size = static_cast<std::size_t>(array.size()) * sizeof(*array.data());
+        complete = complete && size <= bytes.size();
+        if (!complete || size == 0) // there may be nothing to copy, and nowhere
+            return;
+        std::copy_n(bytes.begin(), size, reinterpret_cast<char*>(array.data()));
+        bytes.remove_prefix(size);
+    });
+    return complete && bytes.empty() ? std::optional(std::move(state)) : std::nullopt;
 }
 
 Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& hash) {
@@ -30,6 +94,9 @@ Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& h
             {"fnv1a64", hash},
             {"vertices", c.positions.cols()},
             {"velocities", c.velocity.cols()},
+            {"friction_references", c.friction.reference.cols()},
+            {"rubbing_pairs", c.friction.pairs.size()},
+            {"knows_rubbing_pairs", c.friction.knows_pairs},
             {"level", c.level},
             {"step", c.step},
             {"settle_step", c.settle_step},
@@ -57,31 +124,15 @@ SavedCheckpoint from_manifest(const Json& json) {
     json.at("log_bytes").get_to(saved.log_bytes);
     json.at("index_bytes").get_to(saved.index_bytes);
     c.report = report_from_json(json.at("report"));
-    c.positions.resize(3, json.at("vertices").get<int>());
-    c.velocity.resize(3, json.at("velocities").get<int>());
+    json.at("knows_rubbing_pairs").get_to(c.friction.knows_pairs);
     return saved;
-}
-
-/// Fills positions and velocities, whose sizes are set; false when the bytes are not as many.
-bool fill_state(std::string_view bytes, Checkpoint& checkpoint) {
-    const std::size_t positions = bytes_of(checkpoint.positions).size();
-    const std::size_t velocities = bytes_of(checkpoint.velocity).size();
-    if (bytes.size() != positions + velocities)
-        return false;
-    const auto fill = [](Positions& target, std::string_view source) { // there may be nothing to copy, and nowhere
-        std::copy(source.begin(), source.end(), reinterpret_cast<char*>(target.data()));
-    };
-    fill(checkpoint.positions, bytes.substr(0, positions));
-    fill(checkpoint.velocity, bytes.substr(positions));
-    return true;
 }
 
 } // namespace
 
 void CheckpointFolder::save(const SavedCheckpoint& saved) {
     const int state = 1 - state_in_use_;
-    std::string bytes(bytes_of(saved.checkpoint.positions));
-    bytes += bytes_of(saved.checkpoint.velocity);
+    const std::string bytes = bytes_of(state_of(saved.checkpoint));
     write_file_atomically(folder_ / state_file_name(state), bytes);
     write_file_atomically(folder_ / "manifest.json", manifest_json(saved, state, fnv1a64(bytes)).dump());
     state_in_use_ = state;
@@ -98,8 +149,10 @@ std::optional<SavedCheckpoint> CheckpointFolder::load() {
         SavedCheckpoint saved = from_manifest(json);
         const int state = json.at("state").get<int>();
         const std::string bytes = read_bytes(folder_ / state_file_name(state));
-        if (json.at("fnv1a64") != fnv1a64(bytes) || !fill_state(bytes, saved.checkpoint))
+        std::optional<State> arrays = state_from(bytes, json);
+        if (json.at("fnv1a64") != fnv1a64(bytes) || !arrays)
             throw damaged;
+        restore(*std::move(arrays), saved.checkpoint);
         state_in_use_ = state;
         return saved;
     } catch (const Json::exception&) {

@@ -14,9 +14,9 @@ struct SavedCheckpoint {
     std::uintmax_t log_bytes = 0, index_bytes = 0;
 };
 
-/// DIR/checkpoint: two state files (raw doubles of positions, then velocities) used in turn, and manifest.json, which
-/// names the good one. The manifest is replaced last and in one step, so a writer killed at any moment leaves either
-/// the old checkpoint or the new one.
+/// DIR/checkpoint: two state files (raw numbers: positions, velocities, what contacts remember) used in turn, and
+/// manifest.json, which names the good one. The manifest is replaced last and in one step, so a writer killed at any
+/// moment leaves either the old checkpoint or the new one.
 class CheckpointFolder {
 public:
     explicit CheckpointFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -93,11 +93,13 @@ struct LoadSpec {
 /// A pair of bodies or obstacles with contact settings of its own.
 struct ContactPairSpec {
     std::string a, b;
+    double friction = 0; ///< Coulomb's coefficient
 };
 
 struct ContactSpec {
     double distance = ContactSettings{}.distance;
-    double friction_velocity = 1e-3; ///< m/s
+    double friction = ContactSettings{}.friction;                   ///< Coulomb's coefficient of pairs not listed
+    double friction_velocity = ContactSettings{}.friction_velocity; ///< m/s
     bool self = true;
     std::vector<ContactPairSpec> pairs;
 };

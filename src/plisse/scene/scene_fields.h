@@ -251,14 +251,14 @@ template <typename Visitor>
 void describe(Visitor& v, ContactPairSpec& p) {
     v.required("a", p.a, "a body's or obstacle's name");
     v.required("b", p.b, "a body's or obstacle's name");
-    v.zero_for_now("friction", "Coulomb's coefficient of this pair");
+    v.field("friction", p.friction, not_negative, "Coulomb's coefficient of this pair");
 }
 
 template <typename Visitor>
 void describe(Visitor& v, ContactSpec& c) {
     v.field("distance", c.distance, positive, "m; surfaces nearer than this repel");
     v.zero_for_now("thickness", "m, by which surfaces stay apart beyond touching");
-    v.zero_for_now("friction", "Coulomb's coefficient");
+    v.field("friction", c.friction, not_negative, "Coulomb's coefficient");
     v.field("friction_velocity", c.friction_velocity, positive, "m/s; below it, contacts stick");
     v.field("self", c.self, "whether a body meets itself");
     v.field("pairs", c.pairs, "friction of single pairs of bodies or obstacles");

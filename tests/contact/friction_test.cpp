@@ -1,0 +1,161 @@
+#include <plisse/contact/friction.h>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "contact/sheets.h"
+#include "linalg/dense_system.h"
+
+namespace plisse {
+namespace {
+
+constexpr double slip = 1e-3;
+
+/// A small sheet over a large fixed one, near enough to press, both bent so that normals differ.
+struct Rub {
+    Rub() {
+        const auto bent = [](double x, double y, double z) { return Vec3(x, y + 0.02 * x * z, z); };
+        scene.append_sheet(3, [=](double u, double v) { return bent(u - .5, .008, v - .5); });
+        scene.append_sheet(
+            4, [=](double u, double v) { return bent(2 * u - 1, 0, 2 * v - 1); }, true);
+        Positions rest = scene.x; // far apart at rest
+        for (int v = 0; v < rest.cols(); ++v)
+            if (scene.part[static_cast<std::size_t>(v)] == 1)
+                rest(1, v) -= 1;
+        mesh = scene.mesh(rest);
+        ContactOptions options;
+        options.distance = 0.02;
+        options.stiffness = 1e4;
+        contact = std::make_unique<Contact>(mesh, options);
+    }
+    Friction friction(double mu, double other = 0) const { return {mesh, {slip, {other, mu, mu, other}}}; }
+    Friction lagged(double mu, const Positions& reference) {
+        Friction result = friction(mu);
+        result.begin({reference, {}, false});
+        result.lag(contact->active_pairs(scene.x), scene.x);
+        return result;
+    }
+    Positions shifted(const Vec3& by) const {
+        Positions x = scene.x;
+        for (int v = 0; v < x.cols(); ++v)
+            if (scene.part[static_cast<std::size_t>(v)] == 0)
+                x.col(v) += by;
+        return x;
+    }
+
+    Scene scene;
+    CollisionMesh mesh;
+    std::unique_ptr<Contact> contact;
+};
+
+double total_normal_force(Rub& rub) {
+    double sum = 0;
+    for (const ActivePair& pair : rub.contact->active_pairs(rub.scene.x))
+        sum += pair_normal_force(pair.parameters, pair.separation, gather(rub.scene.x, pair.vertices));
+    return sum;
+}
+
+TEST(Friction, NormalForceIsTheBarriersSlopeAlongTheNormal) {
+    Rub rub;
+    const auto& pairs = rub.contact->active_pairs(rub.scene.x);
+    ASSERT_GT(pairs.size(), 20u);
+    for (const ActivePair& pair : pairs) {
+        const Stencil x = gather(rub.scene.x, pair.vertices);
+        const Vec12 gradient = pair_gradient(pair.parameters, pair.separation, x);
+        Vec3 on_first = gradient.head<3>();
+        if (pair.kind == StencilKind::edge_edge)
+            on_first += gradient.segment<3>(3);
+        // The mollifier's own slope acts on the edges' directions only, and sums up to nothing.
+        EXPECT_NEAR(-on_first.dot(pair.separation.offset.normalized()),
+                    pair_normal_force(pair.parameters, pair.separation, x), 1e-9 * on_first.norm() + 1e-15);
+    }
+}
+
+TEST(Friction, DerivativesMatchCentralDifferences) {
+    Rub rub;
+    Random random(3);
+    for (double size : {0.1 * slip, 0.7 * slip, 5 * slip}) {
+        const Friction friction = rub.lagged(0.4, jittered(rub.scene.x, random, size));
+        const Positions x = rub.scene.x;
+        Positions gradient = Positions::Zero(3, x.cols());
+        friction.add_gradient(x, gradient);
+        std::vector<Edge> pairs(rub.mesh.edges);
+        friction.append_coupled_pairs(pairs);
+        NewtonSystem system(std::vector<std::uint8_t>(static_cast<std::size_t>(x.size()), 0), {});
+        for (int v = 0; v < x.cols(); ++v)
+            pairs.push_back({v, v});
+        system.begin(pairs);
+        friction.add_hessian(x, system);
+        const Eigen::MatrixXd hessian = dense(system);
+        const Positions direction = jittered(Positions::Zero(3, x.cols()), random, 1);
+        const double step = 1e-6 * slip;
+        const double slope = (friction.value(x + step * direction) - friction.value(x - step * direction)) / (2 * step);
+        EXPECT_NEAR(gradient.cwiseProduct(direction).sum(), slope, 1e-6 * gradient.norm() * direction.norm());
+        Positions ahead = Positions::Zero(3, x.cols()), behind = ahead;
+        friction.add_gradient(x + step * direction, ahead);
+        friction.add_gradient(x - step * direction, behind);
+        const VecX change = as_vector(Positions((ahead - behind) / (2 * step)));
+        EXPECT_LT((hessian * as_vector(direction) - change).norm(), 1e-6 * change.norm());
+        EXPECT_GT(hessian.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-9 * hessian.norm());
+    }
+}
+
+TEST(Friction, OpposesTheSlipWithItsLimitBeyondIt) {
+    Rub rub;
+    const Vec3 motion = 10 * slip * Vec3(1, 0, 0);
+    const Friction friction = rub.lagged(0.3, rub.shifted(-motion));
+    Positions gradient = Positions::Zero(3, rub.scene.x.cols());
+    friction.add_gradient(rub.scene.x, gradient);
+    Vec3 on_body = Vec3::Zero();
+    for (int v = 0; v < gradient.cols(); ++v)
+        if (rub.scene.part[static_cast<std::size_t>(v)] == 0)
+            on_body += gradient.col(v);
+    const double limit = 0.3 * total_normal_force(rub);
+    EXPECT_GT(on_body.x(), 0.98 * limit); // normals lean by 0.05 at most
+    EXPECT_LE(on_body.norm(), limit * (1 + 1e-12));
+    EXPECT_LT(gradient.rowwise().sum().norm(), 1e-12 * limit); // and as much on the obstacle
+}
+
+TEST(Friction, IsNotFeltWhereNoCoefficientSays) {
+    Rub rub;
+    EXPECT_FALSE(rub.friction(0).possible());
+    EXPECT_TRUE(rub.friction(0.1).possible());
+    Friction self_only = rub.friction(0, 0.5);
+    self_only.begin({rub.shifted(Vec3(0.1, 0, 0)), {}, false});
+    self_only.lag(rub.contact->active_pairs(rub.scene.x), rub.scene.x);
+    EXPECT_EQ(self_only.value(rub.scene.x), 0);
+}
+
+TEST(Friction, RemembersWhereContactsStickOverSteps) {
+    Rub rub;
+    const auto& pairs = rub.contact->active_pairs(rub.scene.x);
+    Friction friction = rub.friction(0.3);
+    friction.begin({rub.scene.x, {}, false});
+    friction.lag(pairs, rub.scene.x);
+    friction.remember(pairs, rub.scene.x);
+    // A slip of five times e to a new place with the same contacts: what is beyond e is given up, the force stays.
+    const Vec3 motion = 5 * slip * Vec3(0, 0, 1);
+    const auto force_at = [&](const Friction& f, const Positions& x) {
+        Positions gradient = Positions::Zero(3, x.cols());
+        f.add_gradient(x, gradient);
+        return gradient;
+    };
+    const Positions before = force_at(friction, rub.shifted(motion));
+    friction.remember(pairs, rub.shifted(motion));
+    Friction next = rub.friction(0.3);
+    next.begin(friction.memory());
+    next.lag(pairs, rub.shifted(motion));
+    const Positions after = force_at(next, rub.shifted(motion));
+    EXPECT_LT((after - before).norm(), 1e-3 * before.norm()); // normal forces are of one shape of the surfaces
+    // Back by half of e: a contact that had kept its first reference would still pull with all its force.
+    const Positions back = force_at(next, rub.shifted(motion - 0.5 * slip * Vec3(0, 0, 1)));
+    EXPECT_NEAR(back.norm() / after.norm(), 0.75, 0.02); // f1(e/2)
+    // A contact that nobody knew starts without a force.
+    Friction fresh = rub.friction(0.3);
+    fresh.begin({rub.scene.x, {}, true});
+    fresh.lag(pairs, rub.shifted(motion));
+    EXPECT_LT(force_at(fresh, rub.shifted(motion)).norm(), 1e-12 * before.norm());
+}
+
+} // namespace
+} // namespace plisse
