@@ -46,9 +46,11 @@ public:
     /// Starts a step of settling: the same with inertia about `current`, and contacts that carry on what they remember,
     /// or grip where nothing has come before.
     void begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory);
-    /// What contacts remember of the step begun last, and that it ends at x, where it has come to rest.
+    /// What contacts remember of the step begun last.
     const FrictionMemory& friction_memory() const { return friction_->memory(); }
+    /// Lets contacts take in that the step has ended at x.
     void remember_friction(const VecX& x);
+    /// Whether forces are still those of a first step's grip.
     bool friction_grips() const { return friction_->possible() && friction_->grips(); }
     /// Brings the normal forces that friction goes by up to x. False where nothing can rub.
     bool update_friction(const VecX& x);
