@@ -23,7 +23,8 @@ struct Case {
     Separation separation() const { return separate(kind, x); }
 };
 
-/// Random pairs well inside their activation distance and their feature; every second pair of edges is nearly parallel.
+/// Random pairs well inside their activation distance and their feature; every second pair of edges is nearly parallel,
+/// every second pair has a least distance.
 std::vector<Case> random_cases(int count) {
     Random random(3);
     std::vector<Case> cases;
@@ -38,6 +39,8 @@ std::vector<Case> random_cases(int count) {
         const Separation s = c.separation();
         const double activation = std::sqrt(s.squared_distance) * random.uniform(1.05, 30);
         c.parameters = {random.uniform(0.5, 2), activation * activation, 0};
+        if (random.below(2))
+            c.parameters.least_squared = random.uniform(0, 0.25) * s.squared_distance;
         if (parallel)
             c.parameters.mollifier_threshold = cross_squared(c.x) * random.uniform(1.2, 5);
         bool clear = s.squared_distance > 0.005;
@@ -72,7 +75,8 @@ TEST(Barrier, ValueAndDerivatives) {
 TEST(PairEnergy, DerivativesAgreeWithDifferences) {
     std::map<std::array<int, 3>, int> seen;
     for (const Case& c : random_cases(1500)) {
-        const double step = 2e-6 * std::sqrt(c.separation().squared_distance);
+        const double gap = std::sqrt(c.separation().squared_distance) - std::sqrt(c.parameters.least_squared);
+        const double step = 1.5e-6 * gap;
         const auto energy = [&](const Stencil& y) { return pair_energy(c.parameters, separate(c.kind, y), y); };
         const auto gradient = [&](const Stencil& y) { return pair_gradient(c.parameters, separate(c.kind, y), y); };
         const Vec12 expected_gradient = difference_gradient(energy, c.x, step);
@@ -123,7 +127,8 @@ TEST(PairEnergy, GaussNewtonPartIsTheSecondDerivativeAcross) {
                              ? mollify(cross_squared(c.x), c.parameters.mollifier_threshold).value
                              : 1;
         const auto slope = [&](double at) {
-            return 2 * at / c.parameters.activation_squared * barrier(at * at / c.parameters.activation_squared).first;
+            const double least = c.parameters.least_squared, range = c.parameters.activation_squared - least;
+            return 2 * at / range * barrier((at * at - least) / range).first;
         };
         const double second = (slope(d * 1.00001) - slope(d * 0.99999)) / (2e-5 * d);
         const Vec12 direction = squared_distance_gradient(s) / (2 * d);

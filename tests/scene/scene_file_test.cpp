@@ -132,7 +132,6 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
         return R"({"plisse": 1, "bodies": [{"name": "a", "mesh": "a.obj")" + body + "}]" + rest + "}";
     };
     const std::vector<std::string> later = {
-        with(R"(, "contact": {"thickness": 0.001})"),
         with(R"(, "hierarchy": {"operator": "affine"})"),
         with(R"(, "hierarchy": {"operator": "loop"})"),
         with(R"(, "hierarchy": {"operator": "blend"})"),

@@ -12,16 +12,15 @@ namespace {
 constexpr int chunk_size = 512;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
 /// Two parallel sheets of like triangles meet, per area A, in 2 A / vertex area point-triangle pairs, from both sides,
 /// and in about 2.4 A / edge area crossing edges: with these shares the pressure between them comes to 1.1 times that
 /// of one barrier per area, plus what edges and corners beside each other add (measured: 1.3 to 1.4 in all where the
 /// contact distance is a tenth of the edges, 2 where it is a third), on fine meshes as on coarse ones.
 constexpr double point_triangle_share = 0.5, edge_edge_share = 0.25;
-
-/// Distance below which a pair begins to repel. A pair that touches at rest has no silent rest to protect.
-double activation_distance(double contact_distance, double rest_distance) {
-    return rest_distance > 0 ? std::min(contact_distance, 0.5 * rest_distance) : contact_distance;
-}
 
 } // namespace
 
@@ -47,48 +46,64 @@ void ActiveSet::find(const Candidates& candidates, const Positions& x) {
     });
     pairs_.clear();
     energy_ = 0;
-    double least_gap_squared = infinity;
+    least_gap_ = infinity;
+    least_thickness_share_ = infinity;
     for (int c = 0; c < chunks; ++c) {
         const Chunk& chunk = chunks_[static_cast<std::size_t>(c)];
         pairs_.insert(pairs_.end(), chunk.pairs.begin(), chunk.pairs.end());
         energy_ += chunk.energy;
-        least_gap_squared = std::min(least_gap_squared, chunk.least_gap_squared);
+        least_gap_ = std::min(least_gap_, chunk.least_gap);
+        least_thickness_share_ = std::min(least_thickness_share_, chunk.least_thickness_share);
     }
-    least_gap_ = std::sqrt(least_gap_squared);
 }
 
 void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
                            Chunk& chunk) const {
     chunk.pairs.clear();
     chunk.energy = 0;
-    chunk.least_gap_squared = infinity;
+    chunk.least_gap = infinity;
+    chunk.least_thickness_share = infinity;
     for (int i = begin; i < end; ++i) {
-        const double rest_distance = candidates.rest_distance(kind, i);
-        const double activation = activation_distance(options_.distance, rest_distance);
-        const bool counts_as_gap = rest_distance >= options_.distance;
-        const double range = counts_as_gap ? options_.distance : activation;
-        if (candidates.least_distance(kind, i, drift_) >= range)
-            continue;
         const auto vertices = candidates.vertices(kind, i);
+        const bool same_part = mesh_.part[at(vertices[0])] == mesh_.part[at(vertices[3])];
+        const double rest_distance = candidates.rest_distance(kind, i);
+        const PairRange range = pair_range(options_, same_part, rest_distance);
+        const bool counts_as_gap = !same_part || rest_distance >= options_.reach();
+        const double farthest = counts_as_gap ? range.thickness + options_.distance : range.activation;
+        if (candidates.least_distance(kind, i, drift_) >= farthest)
+            continue;
         const Stencil stencil = gather(x, vertices);
-        if (squared_sweep_distance(kind, stencil, stencil) >= range * range)
+        if (squared_sweep_distance(kind, stencil, stencil) >= farthest * farthest)
             continue;
         const Separation separation = separate(kind, stencil);
-        if (counts_as_gap && separation.squared_distance < range * range)
-            chunk.least_gap_squared = std::min(chunk.least_gap_squared, separation.squared_distance);
-        if (separation.squared_distance >= activation * activation)
+        if (separation.squared_distance >= farthest * farthest)
+            continue;
+        const double distance = std::sqrt(separation.squared_distance);
+        if (counts_as_gap)
+            chunk.least_gap = std::min(chunk.least_gap, distance - range.thickness);
+        if (range.thickness > 0)
+            chunk.least_thickness_share = std::min(chunk.least_thickness_share, distance / range.thickness);
+        if (distance >= range.activation)
             continue;
         const std::array<int, 2> primitives = candidates.primitives(kind, i);
-        const PairParameters pair = parameters(kind, primitives, activation);
+        const PairParameters pair = parameters(kind, primitives, range);
         chunk.energy += pair_energy(pair, separation, stencil);
         chunk.pairs.push_back({kind, primitives, vertices, pair, separation});
     }
 }
 
-PairParameters ActiveSet::parameters(StencilKind kind, const std::array<int, 2>& primitives, double activation) const {
+PairRange ActiveSet::range(StencilKind kind, int candidate, const Candidates& candidates) const {
+    const auto vertices = candidates.vertices(kind, candidate);
+    return pair_range(options_, mesh_.part[at(vertices[0])] == mesh_.part[at(vertices[3])],
+                      candidates.rest_distance(kind, candidate));
+}
+
+PairParameters ActiveSet::parameters(StencilKind kind, const std::array<int, 2>& primitives,
+                                     const PairRange& range) const {
     const auto first = static_cast<std::size_t>(primitives[0]), second = static_cast<std::size_t>(primitives[1]);
     PairParameters pair;
-    pair.activation_squared = activation * activation;
+    pair.least_squared = range.least * range.least;
+    pair.activation_squared = range.activation * range.activation;
     double area = 0;
     if (kind == StencilKind::point_triangle) {
         area = point_triangle_share * std::min(mesh_.vertex_area[first], mesh_.face_area[second]);
@@ -97,7 +112,7 @@ PairParameters ActiveSet::parameters(StencilKind kind, const std::array<int, 2>&
         pair.mollifier_threshold =
             mollifier_threshold_factor * edge_length_squared_[first] * edge_length_squared_[second];
     }
-    pair.scale = area * options_.stiffness * activation;
+    pair.scale = area * options_.stiffness * (range.activation - range.least);
     return pair;
 }
 

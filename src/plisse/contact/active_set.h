@@ -18,18 +18,23 @@ public:
     void find(const Candidates& candidates, const Positions& x);
 
     const std::vector<ActivePair>& pairs() const { return pairs_; }
-    double energy() const { return energy_; }       ///< J
-    double least_gap() const { return least_gap_; } ///< m; as Contact::min_gap
+    double energy() const { return energy_; }                               ///< J
+    double least_gap() const { return least_gap_; }                         ///< m; as Contact::min_gap
+    double least_thickness_share() const { return least_thickness_share_; } ///< as Contact's
+
+    /// The range of a candidate.
+    PairRange range(StencilKind kind, int candidate, const Candidates& candidates) const;
+    void set_options(const ContactOptions& options) { options_ = options; }
 
 private:
     struct Chunk {
         std::vector<ActivePair> pairs;
-        double energy = 0, least_gap_squared = 0;
+        double energy = 0, least_gap = 0, least_thickness_share = 0;
     };
 
     void find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
                     Chunk& chunk) const;
-    PairParameters parameters(StencilKind kind, const std::array<int, 2>& primitives, double activation) const;
+    PairParameters parameters(StencilKind kind, const std::array<int, 2>& primitives, const PairRange& range) const;
 
     const CollisionMesh& mesh_;
     ContactOptions options_;
@@ -37,7 +42,7 @@ private:
     Candidates::Drift drift_;
     std::vector<Chunk> chunks_;
     std::vector<ActivePair> pairs_;
-    double energy_ = 0, least_gap_ = 0;
+    double energy_ = 0, least_gap_ = 0, least_thickness_share_ = 1;
 };
 
 } // namespace plisse

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace plisse {
 
 /// The barrier b(X) = -(X - 1)^2 ln X of a squared distance X relative to the activation distance's square, 0 from X =
-/// 1 on (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives.
+/// 1 on and infinite down to 0 (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives.
 struct Barrier {
     double value = 0, first = 0, second = 0;
 };
@@ -13,6 +14,8 @@ struct Barrier {
 inline Barrier barrier(double x) {
     if (!(x < 1))
         return {};
+    if (!(x > 0))
+        return {std::numeric_limits<double>::infinity()};
     const double log = std::log(x), below = x - 1, ratio = below / x;
     return {-below * below * log, -2 * below * log - below * ratio, -2 * log - 4 * ratio + ratio * ratio};
 }

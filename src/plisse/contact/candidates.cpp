@@ -17,12 +17,12 @@ Box box_of(const std::vector<Box>& regions, std::span<const int> vertices) {
 
 /// How far a vertex may stray from where, or from the way along which, pairs were last found. Measured on a twisted
 /// cloth: more makes more candidates to go through in each iteration, less makes more searches.
-double region_slack(const CollisionMesh& mesh, double distance) {
+double region_slack(const CollisionMesh& mesh, double reach) {
     double edge_length = 0;
     for (const Edge& edge : mesh.edges)
         edge_length += (mesh.rest.col(edge[0]) - mesh.rest.col(edge[1])).norm();
     edge_length /= std::max<double>(1, static_cast<double>(mesh.edges.size()));
-    return std::max(0.5 * distance, 0.05 * edge_length);
+    return std::max(0.5 * reach, 0.05 * edge_length);
 }
 
 /// Scalar by scalar: stencils have just been gathered in pieces, which wide loads would have to wait for.
@@ -48,9 +48,9 @@ double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stenc
     return kind == StencilKind::point_triangle ? squared_sweep_gap<1>(from, to) : squared_sweep_gap<2>(from, to);
 }
 
-Candidates::Candidates(const CollisionMesh& mesh, double distance, bool self)
-    : mesh_(mesh), distance_(distance), self_(self), slack_(region_slack(mesh, distance)),
-      vertex_boxes_(mesh.vertices.size()), edge_boxes_(mesh.edges.size()), face_boxes_(mesh.faces.size()) {
+Candidates::Candidates(const CollisionMesh& mesh, double reach, bool self)
+    : mesh_(mesh), reach_(reach), self_(self), slack_(region_slack(mesh, reach)), vertex_boxes_(mesh.vertices.size()),
+      edge_boxes_(mesh.edges.size()), face_boxes_(mesh.faces.size()) {
     // Trees keep their shape, and parts move apart: shifted far from each other, no two parts share a leaf.
     const double shift = 4 * bounding_box(mesh.rest).diagonal();
     const auto shifted_box = [&](std::span<const int> vertices) {
@@ -123,11 +123,11 @@ void Candidates::set_regions(const Positions& x, const Positions* d, double shar
             box.include(x.col(v) + share * d->col(v));
         box = box.inflated(slack_);
         regions_[static_cast<std::size_t>(v)] = box;
-        vertex_boxes_[static_cast<std::size_t>(i)] = box.inflated(distance_);
+        vertex_boxes_[static_cast<std::size_t>(i)] = box.inflated(reach_);
     });
     parallel_for(static_cast<int>(mesh_.edges.size()), 512, [&](int i) {
         const auto e = static_cast<std::size_t>(i);
-        edge_boxes_[e] = box_of(regions_, mesh_.edges[e]).inflated(0.5 * distance_);
+        edge_boxes_[e] = box_of(regions_, mesh_.edges[e]).inflated(0.5 * reach_);
     });
     parallel_for(static_cast<int>(mesh_.faces.size()), 512, [&](int i) {
         const auto f = static_cast<std::size_t>(i);
@@ -170,7 +170,7 @@ bool Candidates::find_pairs(std::size_t most) {
 
 void Candidates::find_distances(StencilKind kind, Pairs& pairs) const {
     // Further apart than `beyond`, the boxes' distance is as good: drift within the regions uses up no more than that.
-    const double far = 2 * distance_, beyond = 2 * distance_ + 4 * slack_;
+    const double far = 2 * reach_, beyond = reach_ + 4 * slack_;
     const auto distance = [&](const Positions& x, const std::array<int, 4>& corners, double cut) {
         const Stencil stencil = gather(x, corners);
         const double box_squared = squared_sweep_distance(kind, stencil, stencil);

@@ -10,13 +10,13 @@ namespace plisse {
 
 /// Pairs of primitives that may come near each other while every vertex stays within a box of its own, its region.
 /// Boxes are convex, so straight motion from one place in its region to another stays inside. Two primitives that are
-/// not a candidate stay further apart than the contact distance.
+/// not a candidate stay further apart than the contact's reach.
 ///
 /// Pairs never share a vertex, are never both on obstacles, and lie within one part only if `self`.
 class Candidates {
 public:
-    /// mesh must outlive the object. distance: the contact distance, m.
-    Candidates(const CollisionMesh& mesh, double distance, bool self);
+    /// mesh must outlive the object. reach: distance below which surfaces may repel, m.
+    Candidates(const CollisionMesh& mesh, double reach, bool self);
 
     /// Drops all regions, so that the next search depends on its arguments alone.
     void forget() { regions_.clear(); }
@@ -41,7 +41,7 @@ public:
             first = mesh_.vertices[static_cast<std::size_t>(first)];
         return {first, second};
     }
-    /// The pair's distance at rest, m, cut off at twice the contact distance.
+    /// The pair's distance at rest, m, cut off at twice the reach.
     double rest_distance(StencilKind kind, int i) const { return of(kind).rest_distances[static_cast<std::size_t>(i)]; }
 
     /// How far primitives may be, anywhere on the straight way from x to y, from where they were when pairs were found.
@@ -74,7 +74,7 @@ private:
     bool may_meet(int vertex, int other) const;
 
     const CollisionMesh& mesh_;
-    double distance_;
+    double reach_;
     bool self_;
     double slack_;
     std::vector<Box> regions_;                                ///< per vertex; empty before the first search

@@ -28,7 +28,7 @@ bool same(const Positions& a, const Positions& b) {
 
 struct Contact::State {
     State(CollisionMesh collision_mesh, const ContactOptions& contact_options)
-        : mesh(std::move(collision_mesh)), options(contact_options), candidates(mesh, options.distance, options.self),
+        : mesh(std::move(collision_mesh)), options(contact_options), candidates(mesh, options.reach(), options.self),
           active(mesh, options) {}
 
     /// Brings the active set to x.
@@ -69,19 +69,25 @@ void Contact::State::evaluate(const Positions& x) {
 
 double Contact::State::safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d,
                                       double length) const {
-    if (candidates.least_distance(kind, candidate, sweep_drift) >= options.distance)
+    const double reach = options.reach();
+    if (candidates.least_distance(kind, candidate, sweep_drift) >= reach)
         return length;
     const auto vertices = candidates.vertices(kind, candidate);
     const Stencil start = gather(sweep_start, vertices);
     const double sweep_squared = squared_sweep_distance(kind, start, gather(sweep_end, vertices));
-    if (sweep_squared >= options.distance * options.distance)
+    if (sweep_squared >= reach * reach)
         return length;
     const Stencil at_x = gather(x, vertices);
+    const double least = active.range(kind, candidate, candidates).least;
+    const auto kept_of = [&](double distance) {
+        return least + std::min(options.ccd_ratio * (distance - least), options.distance);
+    };
     // Any two corners bound the distance at x from above.
-    if (sweep_squared >= options.ccd_ratio * options.ccd_ratio * (at_x.col(0) - at_x.col(3)).squaredNorm())
+    const double most_kept = kept_of((at_x.col(0) - at_x.col(3)).norm());
+    if (sweep_squared >= most_kept * most_kept)
         return length;
     const double distance = std::sqrt(squared_distance(kind, at_x));
-    const double kept = std::min(options.ccd_ratio * distance, options.distance);
+    const double kept = kept_of(distance);
     const Stencil motion = gather(d, vertices);
     if (sweeps_begin_at_x && keeps_apart(kind, at_x, motion, distance, kept, length))
         return length;
@@ -99,7 +105,8 @@ double Contact::State::safe_length(StencilKind kind, const Positions& x, const P
 
 Contact::Contact(CollisionMesh mesh, const ContactOptions& options)
     : state_(std::make_unique<State>(std::move(mesh), options)) {
-    assert(options.distance > 0 && options.stiffness > 0 && options.ccd_ratio > 0 && options.ccd_ratio < 1);
+    assert(options.distance > 0 && options.thickness >= 0 && options.stiffness > 0 && options.ccd_ratio > 0 &&
+           options.ccd_ratio < 1);
 }
 
 Contact::~Contact() = default;
@@ -219,6 +226,21 @@ double Contact::min_gap(const Positions& x) {
     const PhaseScope scope(*state_->times, Phase::contact);
     state_->evaluate(x);
     return state_->active.least_gap();
+}
+
+double Contact::least_thickness_share(const Positions& x) {
+    const PhaseScope scope(*state_->times, Phase::contact);
+    state_->evaluate(x);
+    return state_->active.least_thickness_share();
+}
+
+void Contact::enforce(double share_of_thickness, double stiffness_factor) {
+    assert(share_of_thickness >= 0 && share_of_thickness <= 1 && stiffness_factor > 0);
+    state_->options.enforced = share_of_thickness;
+    ContactOptions options = state_->options;
+    options.stiffness *= stiffness_factor;
+    state_->active.set_options(options);
+    state_->active_at.resize(3, 0);
 }
 
 const std::vector<ActivePair>& Contact::active_pairs(const Positions& x) {

@@ -4,22 +4,12 @@
 
 #include <plisse/base/context.h>
 #include <plisse/contact/collision_mesh.h>
+#include <plisse/contact/contact_options.h>
 #include <plisse/contact/pair_energy.h>
 #include <plisse/geometry/ccd.h>
 #include <plisse/linalg/newton_system.h>
 
 namespace plisse {
-
-/// Which positive semi-definite matrix stands for a pair's Hessian (see pair_energy.h).
-enum class HessianKind { projected, gauss_newton };
-
-struct ContactOptions {
-    double distance = 1e-3; ///< m, > 0: surfaces nearer than this repel
-    double stiffness = 1e6; ///< Pa, > 0: scale of the barrier's pressure
-    bool self = true;       ///< whether a body meets itself (different bodies always meet)
-    double ccd_ratio = 0.1; ///< in (0, 1): share of its distance a pair keeps in one step at least
-    HessianKind hessian = HessianKind::projected;
-};
 
 /// A pair of primitives nearer than its activation distance.
 struct ActivePair {
@@ -54,14 +44,19 @@ public:
     /// Adds the Hessian at x, made positive semi-definite pair by pair when `project` is set.
     void add_hessian(const Positions& x, NewtonSystem& system, bool project = true);
 
-    /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least the lesser
-    /// of options.ccd_ratio of its distance at x and options.distance, at every moment of the motion. Never an
-    /// overestimate.
+    /// Largest alpha in [0, 1] such that moving from x to x + alpha * d keeps every pair apart by at least its least
+    /// distance and the lesser of options.ccd_ratio of what it has beyond that at x and of the contact distance, at
+    /// every moment of the motion. Never an overestimate.
     double max_step(const Positions& x, const Positions& d);
 
-    /// Smallest distance, m, over pairs that are not neighbours on the mesh and not near at rest, looked for within
-    /// the contact distance only; infinity when there is none.
+    /// Smallest gap, m, that is distance less thickness, over pairs of different parts and those of one part that are
+    /// not near at rest, looked for within the contact distance only; infinity when there is none.
     double min_gap(const Positions& x);
+    /// Smallest distance of any pair as a share of its thickness, looked for within the contact distance of that only;
+    /// infinity when there is none.
+    double least_thickness_share(const Positions& x);
+    /// Sets options.enforced, and the barrier's stiffness to a multiple of options.stiffness.
+    void enforce(double share_of_thickness, double stiffness_factor = 1);
 
     /// The pairs that repel at x.
     const std::vector<ActivePair>& active_pairs(const Positions& x);

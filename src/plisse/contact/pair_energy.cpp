@@ -11,9 +11,9 @@ namespace {
 
 /// The barrier as a function of D: value and derivatives times the pair's scale.
 Barrier scaled_barrier(const PairParameters& p, double squared_distance) {
-    const Barrier b = barrier(squared_distance / p.activation_squared);
-    return {p.scale * b.value, p.scale * b.first / p.activation_squared,
-            p.scale * b.second / (p.activation_squared * p.activation_squared)};
+    const double range = p.activation_squared - p.least_squared;
+    const Barrier b = barrier((squared_distance - p.least_squared) / range);
+    return {p.scale * b.value, p.scale * b.first / range, p.scale * b.second / (range * range)};
 }
 
 Mollifier mollifier_of(const PairParameters& p, const Stencil& x) {

@@ -9,10 +9,11 @@ struct PairParameters {
     double scale = 0;               ///< area weight * stiffness * activation distance, J
     double activation_squared = 0;  ///< Dhat, m^2
     double mollifier_threshold = 0; ///< of mollify(), m^4; 0 for point-triangle pairs
+    double least_squared = 0;       ///< D0 of the distance that is kept, m^2
 };
 
-/// Energy of one pair, E = scale * m(c) * b(D / Dhat), with the squared distance D of `separation` (of the stencil x),
-/// the mollifier m and the barrier b. J.
+/// Energy of one pair, E = scale * m(c) * b((D - D0) / (Dhat - D0)), with the squared distance D of `separation` (of
+/// the stencil x), the mollifier m and the barrier b (C-IPC, Li et al. 2021, section 4.1). J; infinite for D <= D0.
 double pair_energy(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
 /// How hard the two primitives press each other apart, -dE/dd with the distance d of `separation`. N.

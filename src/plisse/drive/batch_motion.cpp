@@ -216,7 +216,7 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
         movers.record_of[batch.back()->i] = number;
         movers.record_of[batch.back()->j] = number;
     }
-    const PairFinder finder(mesh, movers, options.least_gap);
+    const PairFinder finder(mesh, movers, options.margin);
     for (const Collapse* collapse : batch)
         for (int v : {collapse->i, collapse->j})
             mesh.update_boxes(mesh.faces().vertex_faces(v), [&](int w) { return finder.reach(w); });

@@ -7,6 +7,7 @@ namespace plisse {
 struct BatchMotionOptions {
     double reference_gap = 1e-3; ///< m: pairs approach to half of it, and nearer ones hardly (PSQ algorithm 4)
     double least_gap = 1e-6;     ///< m: nearer pairs afterwards are reported
+    double margin = 1e-6;        ///< m: pairs that stay further apart than this may be left out
 };
 
 struct BatchMotionResult {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -127,6 +128,43 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
     }
     ++log_.level_report(level_).steps;
     return whole;
+}
+
+LevelStepper::Outcome LevelStepper::bring_to_thickness(double t) {
+    constexpr int most_rounds = 100;
+    constexpr double margin = 1e-3;  // of the contact distance, where the barrier is not yet as steep as a wall
+    constexpr double pressed = 0.02; // share of the way out on which surfaces start each round within the barrier
+    const ContactSettings& contact = discretization_.model().contact;
+    if (contact.thickness == 0)
+        return Outcome::done;
+    const double outside = 1 + margin * contact.distance / contact.thickness;
+    const double tolerance = std::min(settings_.tolerance, 0.1 * contact.distance / settings_.time_step);
+    double share = problem_.least_thickness_share(x_);
+    if (share < outside)
+        log_.context().on_message(fmt::format("level {}: surfaces lie within their contact thickness, the nearest at "
+                                              "{:.3g} of it; moving them apart",
+                                              level_, share));
+    double stiffness_factor = 1;
+    Outcome outcome = Outcome::done;
+    for (int round = 0; share < outside; ++round) {
+        if (round == most_rounds) {
+            outcome = Outcome::cut_short;
+            break;
+        }
+        const VecX before = x_;
+        begin_step(t, settings_.time_step, x_);
+        problem_.enforce_thickness(std::clamp(share - pressed * (outside - share), 0.0, 1.0), stiffness_factor);
+        const NewtonSummary summary = solve_step(t, tolerance, "settle", preview_iteration_cap);
+        if (summary.end == NewtonEnd::cancelled) {
+            x_ = before;
+            return Outcome::cancelled;
+        }
+        const double share_before = std::exchange(share, problem_.least_thickness_share(x_));
+        if (outside - share > 0.5 * (outside - share_before))
+            stiffness_factor *= 4;
+    }
+    problem_.enforce_thickness(1);
+    return outcome;
 }
 
 LevelStepper::Outcome LevelStepper::run_timeline(double duration) {

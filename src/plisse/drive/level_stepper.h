@@ -20,6 +20,11 @@ public:
     Positions positions() const { return as_positions(x_); }
     Checkpoint& progress() { return progress_; }
 
+    /// Moves surfaces that are nearer than their contact thickness apart until none is, by steps at time t in which
+    /// only a growing share of it is enforced, with a barrier that stiffens where the loads are too strong for it.
+    /// `cut_short` when that does not succeed.
+    Outcome bring_to_thickness(double t);
+
     /// Runs the timeline from progress().step on, saving frames and checkpoints. `done` when no step failed.
     Outcome run_timeline(double duration);
 

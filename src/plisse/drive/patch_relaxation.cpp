@@ -160,7 +160,7 @@ std::vector<int> patch_vertices(const ExpandingMesh& mesh, const Collapse& colla
 double relax_patch(ExpandingMesh& mesh, std::span<const int> free, double wanted_gap, Context& context) {
     constexpr int rounds = 5;
     const Model& model = mesh.discretization().model();
-    const double distance = std::max(4 * wanted_gap, model.contact.distance);
+    const double distance = std::max(4 * wanted_gap, model.contact.thickness + model.contact.distance);
     const LocalMesh local = local_mesh(mesh, free, distance);
     PatchProblem problem(local, model.bodies.front().material, distance);
     SparseCholesky cholesky;

@@ -22,14 +22,16 @@ std::size_t at(int index) {
 /// One batch of independent expansions on an expanding mesh.
 class BatchExpansion {
 public:
-    BatchExpansion(ExpandingMesh& mesh, double gap, Context& context) : mesh_(mesh), gap_(gap), context_(context) {}
+    BatchExpansion(ExpandingMesh& mesh, const ContactSettings& contact, Context& context)
+        : mesh_(mesh), thickness_(contact.thickness), gap_(contact.distance + 2 * contact.thickness),
+          context_(context) {}
 
     /// Undoes the records; returns one that no rung of the ladder could make safe, or -1.
     int expand(const std::vector<int>& records, RefinementReport& report) {
         const int failed = split_apart(records, report);
         if (failed >= 0)
             return failed;
-        const BatchMotionResult motion = move_batch(mesh_, records, {gap_, least_gap()});
+        const BatchMotionResult motion = move_batch(mesh_, records, {gap_, least_gap(), least_gap() + thickness_});
         for (int c : motion.tight_records) {
             relax_patch(mesh_, patch_vertices(mesh_, record(c)), least_gap(), context_);
             ++report.relaxed;
@@ -90,7 +92,7 @@ private:
     }
 
     ExpandingMesh& mesh_;
-    double gap_;
+    double thickness_, gap_;
     Context& context_;
 };
 
@@ -105,7 +107,7 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
     result.report.colors = static_cast<int>(coarse.batches.size());
     result.report.min_gap = std::numeric_limits<double>::infinity();
     ExpandingMesh mesh(discretization, from, x, t);
-    BatchExpansion expansion(mesh, discretization.model().contact.distance, context);
+    BatchExpansion expansion(mesh, discretization.model().contact, context);
     Progress shown;
     shown.level = from + 1;
     shown.level_count = discretization.finest() + 1;

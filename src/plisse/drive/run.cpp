@@ -122,6 +122,13 @@ Checkpoint Driver::fresh_progress(int level, const Positions& x) const {
 bool Driver::run_level(LevelStepper& stepper) {
     const int level = stepper.progress().level;
     Checkpoint& progress = stepper.progress();
+    if (progress.step == 0 && progress.settle_step == 0) {
+        const Outcome outcome = stepper.bring_to_thickness(progress.t);
+        if (outcome == Outcome::cut_short)
+            fail(RunStatus::failed, fmt::format("level {} could not be brought out of its contact thickness", level));
+        if (outcome != Outcome::done)
+            return false;
+    }
     if (level == first_level_ && progress.settle_step == 0) {
         const Outcome outcome = stepper.run_timeline(duration_);
         if (outcome == Outcome::cancelled)

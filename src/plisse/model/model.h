@@ -67,6 +67,7 @@ struct ContactSettings {
         double friction = 0;
     };
     double distance = 1e-3; ///< m, > 0
+    double thickness = 0;   ///< m, >= 0: surfaces stay apart by more than this
     bool self = true;
     double friction = 0;             ///< Coulomb's coefficient of pairs not listed, >= 0
     double friction_velocity = 1e-3; ///< m/s, > 0: contacts that slide more slowly stick

@@ -121,6 +121,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
         obstacle[at(part)] = model.is_obstacle(part);
     ContactOptions options;
     options.distance = model.contact.distance;
+    options.thickness = model.contact.thickness;
     options.self = model.contact.self;
     options.stiffness = contact_stiffness(model);
     contact_ = std::make_unique<Contact>(CollisionMesh(mesh.rest, mesh.faces, mesh.part, obstacle), options);
@@ -384,6 +385,14 @@ double ShellProblem::residual(const VecX& x) {
 
 double ShellProblem::min_gap(const VecX& x) {
     return contact_->min_gap(level_positions(x));
+}
+
+double ShellProblem::least_thickness_share(const VecX& x) {
+    return contact_->least_thickness_share(level_positions(x));
+}
+
+void ShellProblem::enforce_thickness(double share, double stiffness_factor) {
+    contact_->enforce(share, stiffness_factor);
 }
 
 double ShellProblem::max_stretch(const VecX& x) {

@@ -70,6 +70,10 @@ public:
     /// forces are round-off.
     double residual(const VecX& x);
     double min_gap(const VecX& x);
+    /// As Contact's.
+    double least_thickness_share(const VecX& x);
+    /// As Contact's enforce().
+    void enforce_thickness(double share, double stiffness_factor = 1);
     /// Largest principal stretch of the mesh that carries the membrane.
     double max_stretch(const VecX& x);
     int active_contacts(const VecX& x);

@@ -85,7 +85,7 @@ private:
 
     void set_contact() {
         const ContactSpec& spec = scene_.contact;
-        model_.contact = {spec.distance, spec.self, spec.friction, spec.friction_velocity, {}};
+        model_.contact = {spec.distance, spec.thickness, spec.self, spec.friction, spec.friction_velocity, {}};
         for (const ContactPairSpec& pair : spec.pairs)
             model_.contact.pairs.push_back({part_number(pair.a), part_number(pair.b), pair.friction});
     }

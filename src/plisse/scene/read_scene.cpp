@@ -99,12 +99,6 @@ public:
             field(key, value.emplace(), doc);
     }
     bool lists_what_is_there() const { return false; }
-    void zero_for_now(const char* key, const char* doc) {
-        double value = 0;
-        field(key, value, not_negative, doc);
-        if (value != 0)
-            at_.member(*find(key)).fail_later(fmt::format("\"{}\" other than 0", key), "give 0 or leave it out");
-    }
     void null_for_now(const char* key, const char*) {
         if (const JsonMember* member = find(key); member && member->value.kind != Kind::null)
             at_.member(*member).fail_later(fmt::format("\"{}\"", key), "give null or leave it out");

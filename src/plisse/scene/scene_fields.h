@@ -16,7 +16,6 @@ namespace plisse {
 ///   required(key, value, doc)            a key that may not
 ///   field_if(applies, key, value, limits, doc)   a key that other keys' values rule out
 ///   alternative(key, optional, doc)      one of several keys of which the object has one
-///   zero_for_now(key, doc)               a number other than 0 is for a later version
 ///   null_for_now(key, doc)               anything but null is for a later version
 ///   check(holds, key, wrong, right)      what one key's type cannot say; only the reader minds
 ///   lists_what_is_there()                whether the object holds what is to be listed: true for the writer alone
@@ -257,7 +256,7 @@ void describe(Visitor& v, ContactPairSpec& p) {
 template <typename Visitor>
 void describe(Visitor& v, ContactSpec& c) {
     v.field("distance", c.distance, positive, "m; surfaces nearer than this repel");
-    v.zero_for_now("thickness", "m, by which surfaces stay apart beyond touching");
+    v.field("thickness", c.thickness, not_negative, "m; surfaces stay apart by more than this, like solid sheets");
     v.field("friction", c.friction, not_negative, "Coulomb's coefficient");
     v.field("friction_velocity", c.friction_velocity, positive, "m/s; below it, contacts stick");
     v.field("self", c.self, "whether a body meets itself");

@@ -146,10 +146,6 @@ public:
         alternatives_.push_back({{"required", {key}}});
     }
     bool lists_what_is_there() const { return false; }
-    void zero_for_now(const char* key, const char* doc) {
-        add(key, {{"type", "number"}, {"minimum", 0}, {"default", 0}},
-            doc + std::string("; other than 0") + later_note);
-    }
     void null_for_now(const char* key, const char* doc) {
         add(key, {{"type", {"number", "null"}}, {"default", nullptr}}, doc + std::string(later_note));
     }
