@@ -98,7 +98,7 @@ struct ContactPairSpec {
 
 struct ContactSpec {
     double distance = ContactSettings{}.distance;
-    double thickness = ContactSettings{}.thickness; ///< m
+    double thickness = ContactSettings{}.thickness;                 ///< m
     double friction = ContactSettings{}.friction;                   ///< Coulomb's coefficient of pairs not listed
     double friction_velocity = ContactSettings{}.friction_velocity; ///< m/s
     bool self = true;
