@@ -1,6 +1,7 @@
 #include "run_command.h"
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/core.h>
@@ -9,6 +10,8 @@
 #include <plisse/base/error.h>
 #include <plisse/base/parallel.h>
 #include <plisse/drive/run.h>
+#include <plisse/mesh/intersecting_surfaces.h>
+#include <plisse/mesh/write_ply.h>
 #include <plisse/scene/build_model.h>
 #include <plisse/scene/overrides.h>
 #include <plisse/scene/read_scene.h>
@@ -75,6 +78,13 @@ ExitCode exit_code(const RunReport& report) {
     return report.status == RunStatus::converged && report.intersecting_pairs == 0 ? ExitCode::done : ExitCode::failed;
 }
 
+/// A mesh next to the results' folder, which a refused run does not leave behind.
+std::string intersections_file(std::filesystem::path folder) {
+    if (!folder.has_filename())
+        folder = folder.parent_path();
+    return folder.string() + "_intersections.ply";
+}
+
 void run_scene(const RunArguments& arguments) {
     if (arguments.until && !(std::isfinite(*arguments.until) && *arguments.until >= 0))
         throw InputError("--until", "the time is not a number of at least 0", "give seconds of the timeline");
@@ -114,7 +124,15 @@ void add_run_command(CLI::App& app) {
     command->add_flag("--quiet", arguments->quiet, "prints errors only");
     command->add_option("--progress", arguments->progress, "auto, plain or json")
         ->check(CLI::IsMember({"auto", "plain", "json"}));
-    command->callback([arguments] { run_scene(*arguments); });
+    command->callback([arguments] {
+        try {
+            run_scene(*arguments);
+        } catch (const IntersectingSurfaces& error) {
+            const std::string file = intersections_file(arguments->folder);
+            write_ply(file, error.faces(), error.parts());
+            throw error.with("and look at the faces that meet in " + file);
+        }
+    });
 }
 
 } // namespace plisse

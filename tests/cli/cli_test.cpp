@@ -57,6 +57,18 @@ TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
     expect_unusable({"export", "x", "--format", "usd"}, "not supported in this version");
 }
 
+TEST_F(Cli, AnIntersectingStartIsRefusedWithItsPlacesAndShown) {
+    write("crossing.json", R"({"plisse": 1, "name": "crossing", "bodies": [
+        {"name": "sheet", "mesh": {"generate": "sheet", "size": [1, 1], "cells": [2, 2], "pattern": "regular"}},
+        {"name": "ball", "mesh": {"generate": "sphere", "radius": 0.1, "edge_length": 0.05},
+         "transform": {"translate": [0.3, 0, 0]}}], "hierarchy": {"levels": 1}})");
+    expect_unusable({"run", at("crossing.json"), "-o", at("out")}, "face 27 of \"ball\" near (0.");
+    expect_unusable({"run", at("crossing.json"), "-o", at("out/")}, at("out_intersections.ply"));
+    EXPECT_FALSE(fs::exists(at("out")));
+    const Outcome check = run({"check", at("out_intersections.ply"), "--json"});
+    EXPECT_GT(Json::parse(check.out)["intersecting_face_pairs"], 0);
+}
+
 TEST_F(Cli, HelpAndVersionEndInZero) {
     EXPECT_EQ(run({"--version"}).code, 0);
     EXPECT_NE(run({"--help"}).out.find("hierarchy"), std::string::npos);

@@ -12,8 +12,12 @@ public:
     InputError(const std::string& place, const std::string& what_is_wrong, const std::string& what_would_be_right)
         : std::runtime_error(place + ": " + what_is_wrong + "; " + what_would_be_right), place_(place) {}
     const std::string& place() const { return place_; }
+    /// The same with more to say at the end of its remedy.
+    InputError with(const std::string& more) const { return InputError(place_, what() + (", " + more)); }
 
 private:
+    InputError(const std::string& place, const std::string& sentence) : std::runtime_error(sentence), place_(place) {}
+
     std::string place_;
 };
 

@@ -6,6 +6,13 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#ifdef __SANITIZE_THREAD__
+extern "C" {
+void __tsan_acquire(void* address);
+void __tsan_release(void* address);
+}
+#endif
+
 namespace plisse {
 
 /// Sets how many threads parallel loops use for as long as the object lives. Results never depend on the number.
@@ -26,6 +33,24 @@ private:
 /// How many threads parallel loops use now.
 int thread_count();
 
+/// Tells a thread sanitizer what TBB's library, which it cannot see into, orders: whatever came before a loop before
+/// the loop's pieces, and these before whatever follows it. Nothing orders the pieces among each other.
+class LoopOrder {
+public:
+#ifdef __SANITIZE_THREAD__
+    LoopOrder() { __tsan_release(&begun_); }
+    ~LoopOrder() { __tsan_acquire(&ended_); }
+    void begin_piece() { __tsan_acquire(&begun_); }
+    void end_piece() { __tsan_release(&ended_); }
+
+private:
+    char begun_ = 0, ended_ = 0;
+#else
+    void begin_piece() {}
+    void end_piece() {}
+#endif
+};
+
 /// Runs body(i) for i in [0, count). The calls must not write to the same place: nothing orders them.
 template <typename Body>
 void parallel_for(int count, int grain, const Body& body) {
@@ -34,10 +59,13 @@ void parallel_for(int count, int grain, const Body& body) {
             body(i);
         return;
     }
+    LoopOrder order;
     tbb::parallel_for(tbb::blocked_range<int>(0, count, static_cast<std::size_t>(grain)),
                       [&](const tbb::blocked_range<int>& range) {
+                          order.begin_piece();
                           for (int i = range.begin(); i < range.end(); ++i)
                               body(i);
+                          order.end_piece();
                       });
 }
 

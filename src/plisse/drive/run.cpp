@@ -9,6 +9,7 @@
 #include <plisse/base/error.h>
 #include <plisse/drive/level_stepper.h>
 #include <plisse/drive/refine.h>
+#include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/spatial/box.h>
 #include <plisse/spatial/intersections.h>
 
@@ -101,11 +102,13 @@ void Driver::check_start(const Positions& x) const {
     const auto pairs = intersecting_pairs(x, faces, both_obstacles);
     if (pairs.empty())
         return;
-    const Vec3 place = x.col(faces[at(pairs.front()[0])][0]);
-    throw InputError(model_.name,
-                     fmt::format("{} pairs of faces intersect at the start, the first near ({:.6g}, {:.6g}, {:.6g})",
-                                 pairs.size(), place.x(), place.y(), place.z()),
-                     "surfaces that do not touch");
+    const Vec3 place = meeting_place(x, faces[at(pairs.front()[0])], faces[at(pairs.front()[1])]);
+    const InputError error(
+        model_.name,
+        fmt::format("{} pairs of faces of level {} intersect at the start, the first near ({:.6g}, {:.6g}, {:.6g})",
+                    pairs.size(), first_level_, place.x(), place.y(), place.z()),
+        "surfaces may not touch");
+    throw IntersectingSurfaces(error, x, faces, pairs, part);
 }
 
 Checkpoint Driver::fresh_progress(int level, const Positions& x) const {

@@ -19,7 +19,8 @@ struct RunResult {
 };
 
 /// Runs the model with its method to the end, to a cancel, or to a stall. Throws InputError for a model that cannot be
-/// run (such as surfaces that intersect at the start).
+/// run (IntersectingSurfaces where they do at the start). Surfaces that are only nearer than the contact thickness are
+/// moved apart.
 RunResult run(const Model& model, const RunOptions& options, Recorder& recorder, Context& context);
 
 } // namespace plisse

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
 #include <plisse/scene/select_vertices.h>
@@ -182,12 +183,21 @@ private:
             return;
         std::string places;
         for (std::size_t i = 0; i < std::min<std::size_t>(3, pairs.size()); ++i)
-            places += fmt::format("{}{} and {}", i > 0 ? ", " : "", face_name(pairs[i][0]), face_name(pairs[i][1]));
-        throw scene_.error_at(part_pointer(part[static_cast<std::size_t>(pairs.front()[0])]),
-                              fmt::format("{}{} pairs of faces intersect {}, first {}",
-                                          static_cast<int>(pairs.size()) == most ? "at least " : "", pairs.size(), when,
-                                          places),
-                              "separate the surfaces, by `transform` or in the meshes");
+            places += (i > 0 ? ", " : "") + meeting(positions, pairs[i]);
+        const InputError error = scene_.error_at(part_pointer(part[static_cast<std::size_t>(pairs.front()[0])]),
+                                                 fmt::format("{}{} pairs of faces intersect {}, first {}",
+                                                             static_cast<int>(pairs.size()) == most ? "at least " : "",
+                                                             pairs.size(), when, places),
+                                                 "separate the surfaces, by `transform` or in the meshes");
+        throw IntersectingSurfaces(error, positions, model_.mesh.faces, pairs, part);
+    }
+
+    std::string meeting(const Positions& positions, const std::array<int, 2>& pair) const {
+        const auto& faces = model_.mesh.faces;
+        const Vec3 place = meeting_place(positions, faces[static_cast<std::size_t>(pair[0])],
+                                         faces[static_cast<std::size_t>(pair[1])]);
+        return fmt::format("{} and {} near ({:.6g}, {:.6g}, {:.6g})", face_name(pair[0]), face_name(pair[1]), place.x(),
+                           place.y(), place.z());
     }
 
     std::string part_pointer(int part) const {
