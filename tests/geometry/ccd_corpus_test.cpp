@@ -36,10 +36,10 @@ bool is_still(const CcdQuery& query) {
 /// The step that keeps apart by any distance at all, against the exact first contact.
 void check_contact(const CcdFamily& family, int index, const CcdQuery& query, Counts& counts) {
     FirstContact contact(query.kind, query.x, query.d);
-    const double step = safe_step(query.kind, query.x, query.d, 0);
+    const double step = is_still(query) ? 0 : safe_step(query.kind, query.x, query.d, 0);
     ++counts.queries;
     if (!contact.happens()) {
-        counts.false_positives += step < 1;
+        counts.false_positives += step < 1 && !is_still(query);
         return;
     }
     ++counts.contacts;

@@ -193,7 +193,8 @@ Direction furthest_direction(const std::vector<LongVec3>& corners) {
     for (std::size_t k = 0; k < size; ++k) {
         const LongVec3 &q = corners[k], edge = (corners[(k + 1) % size] - q).stableNormalized();
         consider(q);
-        consider(q - q.dot(edge) * edge);
+        const LongVec3 foot = q - q.dot(edge) * edge;
+        consider(foot - foot.dot(edge) * edge); // again, or a near foot is square only to the digits of a far corner
     }
     const LongVec3 first = (corners[1] - corners[0]).stableNormalized(), other = corners[size - 1] - corners[0];
     const LongVec3 normal = first.cross((other - other.dot(first) * first).stableNormalized());
