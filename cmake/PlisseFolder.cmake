@@ -13,15 +13,19 @@ function(plisse_folder name)
   set_property(GLOBAL APPEND PROPERTY PLISSE_FOLDERS plisse_${name})
 endfunction()
 
-# plisse_tests(NAME LINKS ...): the test program test_NAME made of tests/NAME.
+# plisse_tests(NAME [HAS_SLOW] LINKS ...): the test program test_NAME made of tests/NAME. With HAS_SLOW, suites whose
+# names begin with Slow get the label slow.
 function(plisse_tests name)
-  cmake_parse_arguments(TESTS "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(TESTS "HAS_SLOW" "" "LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(sources)
     add_executable(test_${name} ${sources})
     target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_compile_definitions(test_${name} PRIVATE PLISSE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     target_link_libraries(test_${name} PRIVATE ${TESTS_LINKS} GTest::gtest_main plisse_compiler)
-    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(test_${name} TEST_FILTER "-Slow*" DISCOVERY_TIMEOUT 60)
+    if(TESTS_HAS_SLOW)
+      gtest_discover_tests(test_${name} TEST_FILTER "Slow*" DISCOVERY_TIMEOUT 60 PROPERTIES LABELS slow TIMEOUT 7200)
+    endif()
   endif()
 endfunction()

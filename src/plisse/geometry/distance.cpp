@@ -33,6 +33,12 @@ Stencil relative(const Stencil& x) {
     return x.colwise() - x.col(0);
 }
 
+/// A vector square to u and v, as long as u x v. Its second factor is made square to the first: otherwise the product
+/// of nearly parallel vectors leans towards them by a rounding over their sine, and heights along it are as wrong.
+Vec3 cross_square(const Vec3& u, const Vec3& v) {
+    return u.cross(v - v.dot(u) / u.squaredNorm() * u);
+}
+
 /// Fills in what follows from weights and slides. Rounding leaves parts of y * w along the tangents that are as large
 /// as the offset itself when the primitives nearly touch, so they are taken off.
 void complete(Separation& s, const Stencil& y) {
@@ -42,7 +48,7 @@ void complete(Separation& s, const Stencil& y) {
         const Vec3 tangent = s.tangents.col(0);
         s.offset -= s.offset.dot(tangent) / tangent.squaredNorm() * tangent;
     } else if (s.freedom == 2) {
-        const Vec3 normal = s.tangents.col(0).cross(s.tangents.col(1)).normalized();
+        const Vec3 normal = cross_square(s.tangents.col(0), s.tangents.col(1)).normalized();
         s.offset = s.offset.dot(normal) * normal;
     }
     s.squared_distance = s.offset.squaredNorm();
@@ -108,7 +114,7 @@ struct Facing {
 
 Facing face_triangle(const Stencil& y) {
     const Vec3 e1 = y.col(2) - y.col(1), e2 = y.col(3) - y.col(1), to_point = -y.col(1);
-    const Vec3 normal = e1.cross(e2);
+    const Vec3 normal = cross_square(e1, e2);
     const double area_squared = normal.squaredNorm();
     if (!(area_squared > parallel_sine_squared * e1.squaredNorm() * e2.squaredNorm()))
         return {};
@@ -120,7 +126,7 @@ Facing face_triangle(const Stencil& y) {
 
 Facing face_edges(const Stencil& y) {
     const Vec3 u = y.col(1), v = y.col(3) - y.col(2), between = -y.col(2);
-    const Vec3 normal = u.cross(v);
+    const Vec3 normal = cross_square(u, v);
     const double area_squared = normal.squaredNorm();
     if (!(area_squared > parallel_sine_squared * u.squaredNorm() * v.squaredNorm()))
         return {};

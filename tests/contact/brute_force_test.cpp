@@ -1,0 +1,287 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <plisse/contact/barrier.h>
+#include <plisse/contact/candidates.h>
+#include <plisse/contact/contact.h>
+
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/squared_distance_3.h>
+
+#include "contact/sheets.h"
+
+namespace plisse {
+namespace {
+
+constexpr auto pt = StencilKind::point_triangle;
+constexpr auto ee = StencilKind::edge_edge;
+
+using Pair = std::pair<StencilKind, std::array<int, 4>>;
+using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+
+/// In rational numbers.
+double exact_distance(StencilKind kind, const Stencil& x) {
+    std::array<Exact::Point_3, 4> p;
+    for (int i = 0; i < 4; ++i)
+        p[static_cast<std::size_t>(i)] = {x(0, i), x(1, i), x(2, i)};
+    const auto squared = kind == pt
+                             ? CGAL::squared_distance(p[0], Exact::Triangle_3(p[1], p[2], p[3]))
+                             : CGAL::squared_distance(Exact::Segment_3(p[0], p[1]), Exact::Segment_3(p[2], p[3]));
+    return std::sqrt(CGAL::to_double(squared));
+}
+
+/// A box's distance bounds the exact one, which takes long.
+bool surely_beyond(double distance, const Stencil& x, int first_size) {
+    const Vec3 low = x.leftCols(first_size).rowwise().minCoeff(), high = x.leftCols(first_size).rowwise().maxCoeff();
+    const auto other = x.rightCols(4 - first_size);
+    const double slack = distance * (1 + 1e-9);
+    return (other.rowwise().minCoeff().array() > high.array() + slack).any() ||
+           (other.rowwise().maxCoeff().array() < low.array() - slack).any();
+}
+
+/// One configuration: surfaces as they lie now and at rest, and how they move.
+struct Configuration {
+    std::string name;
+    Scene scene;
+    Positions rest, motion;
+    double distance;
+    bool self;
+
+    CollisionMesh mesh() const { return scene.mesh(rest); }
+};
+
+Positions random_points(Random& random, int count, double size) {
+    return jittered(Positions::Zero(3, count), random, size);
+}
+
+/// Triangles that cross each other as they like, in several parts, the last an obstacle.
+void append_soup(Scene& scene, Random& random) {
+    for (int part = 0; part < 4; ++part) {
+        std::vector<Face> faces;
+        const int count = 6 + random.below(12);
+        while (faces.size() < static_cast<std::size_t>(count / 3)) { // some share corners, none an edge
+            const int f = static_cast<int>(faces.size());
+            faces.push_back({2 * f, 2 * f + 1, 2 * f + 2});
+        }
+        const int points = 2 * static_cast<int>(faces.size()) + 1;
+        scene.append(random_points(random, points, 1), faces, part == 3);
+    }
+}
+
+/// A sheet folded like a fan and crumpled, so that it is near itself in many places.
+void append_crumpled(Scene& scene, Random& random) {
+    const double folds = random.uniform(3, 9), width = random.uniform(0.05, 0.3);
+    scene.append_sheet(7, [&](double u, double v) {
+        return Vec3(width * std::sin(folds * u), 0.1 * u, v) + 0.03 * random_points(random, 1, 1).col(0);
+    });
+}
+
+/// Layers on top of each other, exactly parallel to each other, some with the same grid, the lowest an obstacle.
+void append_layers(Scene& scene, Random& random) {
+    const double step = random.uniform(0.01, 0.1);
+    for (int layer = 0; layer < 4; ++layer) {
+        const double shift = random.below(2) == 0 ? 0 : random.uniform(-0.3, 0.3);
+        scene.append_sheet(
+            4, [&](double u, double v) { return Vec3(u + shift, step * layer, v - shift); }, layer == 0);
+    }
+}
+
+Configuration configuration(int number) {
+    Random random(static_cast<std::uint64_t>(number));
+    constexpr std::array kinds = {std::pair("soup", append_soup), std::pair("crumpled", append_crumpled),
+                                  std::pair("layers", append_layers)};
+    const auto& [name, append] = kinds[static_cast<std::size_t>(number) % kinds.size()];
+    Configuration c{name + std::string(" ") + std::to_string(number), {}, {}, {}, random.uniform(0.02, 0.2), false};
+    append(c.scene, random);
+    c.self = random.below(4) > 0;
+    c.rest = c.scene.x;
+    c.rest.row(1) *= random.uniform(1, 10); // further apart at rest, some pairs not far enough to repel at once
+    c.motion = random_points(random, static_cast<int>(c.scene.x.cols()), std::pow(10, random.uniform(-2, 0)));
+    const double scale = number % 5 == 0 ? std::pow(10, random.uniform(-9, 9)) : 1;
+    const double shift = number % 7 == 0 ? 50 * scale : 0;
+    for (Positions* p : {&c.scene.x, &c.rest})
+        *p = (scale * *p).colwise() + shift * Vec3::Ones();
+    c.motion *= scale;
+    c.distance *= scale;
+    return c;
+}
+
+constexpr int configuration_count = 200;
+
+bool may_meet(const Configuration& c, int v, int w) {
+    const auto part = [&](int i) { return static_cast<std::size_t>(c.scene.part[static_cast<std::size_t>(i)]); };
+    if (c.scene.obstacle[part(v)] != 0 && c.scene.obstacle[part(w)] != 0)
+        return false;
+    return part(v) != part(w) || c.self;
+}
+
+/// All pairs that may meet, in the order of their stencils, with their primitives' areas' lesser one.
+template <typename Visit>
+void visit_pairs(const Configuration& c, const CollisionMesh& mesh, const Visit& visit) {
+    for (const int v : mesh.vertices)
+        for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+            const auto& [a, b, d] = mesh.faces[f];
+            if (v != a && v != b && v != d && may_meet(c, v, a))
+                visit(Pair{pt, {v, a, b, d}},
+                      std::min(mesh.vertex_area[static_cast<std::size_t>(v)], mesh.face_area[f]));
+        }
+    for (std::size_t i = 0; i < mesh.edges.size(); ++i)
+        for (std::size_t j = i + 1; j < mesh.edges.size(); ++j) {
+            const auto& [a, b] = mesh.edges[i], &[ d, e ] = mesh.edges[j];
+            if (std::set{a, b, d, e}.size() == 4 && may_meet(c, a, d))
+                visit(Pair{ee, {a, b, d, e}}, std::min(mesh.edge_area[i], mesh.edge_area[j]));
+        }
+}
+
+/// Exact distances below `beyond` of all pairs, which need not be found.
+std::map<Pair, double> near_pairs(const Configuration& c, const CollisionMesh& mesh, const Positions& x,
+                                  double beyond) {
+    std::map<Pair, double> result;
+    visit_pairs(c, mesh, [&](const Pair& pair, double) {
+        const Stencil stencil = gather(x, pair.second);
+        if (surely_beyond(beyond, stencil, pair.first == pt ? 1 : 2))
+            return;
+        const double distance = exact_distance(pair.first, stencil);
+        if (distance < beyond)
+            result[pair] = distance;
+    });
+    return result;
+}
+
+std::map<Pair, double> found_pairs(const Candidates& candidates) {
+    std::map<Pair, double> result;
+    for (const auto kind : {pt, ee})
+        for (int i = 0; i < candidates.size(kind); ++i) {
+            auto v = candidates.vertices(kind, i);
+            if (kind == ee && v > std::array{v[2], v[3], v[0], v[1]})
+                v = {v[2], v[3], v[0], v[1]};
+            EXPECT_TRUE(result.emplace(Pair{kind, v}, candidates.rest_distance(kind, i)).second) << "found twice";
+        }
+    return result;
+}
+
+TEST(BruteForce, CandidatesHoldEveryNearPairAndNoOther) {
+    int near_count = 0, found_count = 0;
+    for (int number = 0; number < configuration_count; ++number) {
+        const Configuration c = configuration(number);
+        SCOPED_TRACE(c.name);
+        const CollisionMesh mesh = c.mesh();
+        const Positions& x = c.scene.x;
+        Candidates candidates(mesh, c.distance, c.self);
+        std::set<Pair> allowed;
+        visit_pairs(c, mesh, [&](const Pair& pair, double) { allowed.insert(pair); });
+        const auto check = [&](const Positions& at) {
+            ASSERT_TRUE(candidates.contain(at));
+            const auto found = found_pairs(candidates);
+            found_count += static_cast<int>(found.size());
+            for (const auto& [pair, rest_distance] : found)
+                ASSERT_TRUE(allowed.contains(pair));
+            for (const auto& [pair, distance] : near_pairs(c, mesh, at, c.distance)) {
+                ++near_count;
+                ASSERT_TRUE(found.contains(pair)) << distance;
+                const double rest = exact_distance(pair.first, gather(c.rest, pair.second));
+                ASSERT_NEAR(found.at(pair), std::min(rest, 2 * c.distance), 1e-9 * c.distance);
+            }
+        };
+        candidates.find_around(x);
+        check(x);
+        const double share = candidates.find_along(x, c.motion, 1);
+        for (const double t : {0.0, 0.4, 1.0})
+            check(x + t * share * c.motion);
+    }
+    EXPECT_GT(near_count, 50'000);
+    EXPECT_LT(found_count, 40 * near_count);
+}
+
+TEST(BruteForce, LeastDistancesAreNeverTooLarge) {
+    for (int number = 0; number < configuration_count; ++number) {
+        const Configuration c = configuration(number);
+        SCOPED_TRACE(c.name);
+        const CollisionMesh mesh = c.mesh();
+        const Positions &x = c.scene.x, end = x + c.motion;
+        Candidates candidates(mesh, c.distance, c.self);
+        candidates.find_along(x, c.motion, 1);
+        Candidates::Drift drift;
+        candidates.find_drift(x, end, drift);
+        for (const auto kind : {pt, ee})
+            for (int i = number % 10; i < candidates.size(kind); i += 10)
+                for (const Positions& at : {x, Positions(0.5 * (x + end)), end}) {
+                    const double distance = exact_distance(kind, gather(at, candidates.vertices(kind, i)));
+                    ASSERT_LE(candidates.least_distance(kind, i, drift), distance + 1e-12 * c.distance);
+                }
+    }
+}
+
+TEST(BruteForce, ActivePairsGapsAndEnergiesAgree) {
+    int active_count = 0, gap_count = 0;
+    for (int number = 0; number < configuration_count; ++number) {
+        const Configuration c = configuration(number);
+        SCOPED_TRACE(c.name);
+        ContactOptions options;
+        options.distance = c.distance;
+        options.self = c.self;
+        Contact contact(c.mesh(), options);
+        const CollisionMesh& mesh = contact.mesh();
+        const Positions& x = c.scene.x;
+
+        std::map<Pair, double> expected;
+        double energy = 0, gap = std::numeric_limits<double>::infinity();
+        const auto near = near_pairs(c, mesh, x, c.distance);
+        visit_pairs(c, mesh, [&](const Pair& pair, double area) {
+            const auto found = near.find(pair);
+            if (found == near.end())
+                return;
+            const double distance = found->second;
+            const double rest = exact_distance(pair.first, gather(c.rest, pair.second));
+            const double activation = rest > 0 ? std::min(c.distance, 0.5 * rest) : c.distance;
+            if (rest >= c.distance)
+                gap = std::min(gap, distance);
+            if (distance >= activation)
+                return;
+            expected[pair] = distance;
+            const double weight = (pair.first == pt ? 0.5 : 0.25) * area * options.stiffness * activation;
+            double mollifier = 1;
+            if (pair.first == ee) {
+                const auto edge = [&](const Positions& at, int i) -> Vec3 {
+                    const auto k = static_cast<std::size_t>(i);
+                    return at.col(pair.second[k + 1]) - at.col(pair.second[k]);
+                };
+                const double threshold = 1e-3 * edge(c.rest, 0).squaredNorm() * edge(c.rest, 2).squaredNorm();
+                const double share = edge(x, 0).cross(edge(x, 2)).squaredNorm() / threshold;
+                mollifier = share < 1 ? (2 - share) * share : 1;
+            }
+            energy += weight * mollifier * barrier(distance * distance / (activation * activation)).value;
+        });
+
+        std::map<Pair, double> actual;
+        for (const ActivePair& pair : contact.active_pairs(x)) {
+            auto v = pair.vertices;
+            if (pair.kind == ee && v > std::array{v[2], v[3], v[0], v[1]})
+                v = {v[2], v[3], v[0], v[1]};
+            actual[{pair.kind, v}] = std::sqrt(pair.separation.squared_distance);
+        }
+        ASSERT_EQ(actual.size(), expected.size());
+        for (const auto& [pair, distance] : expected) {
+            ASSERT_TRUE(actual.contains(pair));
+            ASSERT_NEAR(actual[pair], distance, 1e-11 * c.distance);
+        }
+        active_count += static_cast<int>(expected.size());
+        if (std::isfinite(gap)) {
+            ++gap_count;
+            ASSERT_NEAR(contact.min_gap(x), gap, 1e-11 * c.distance);
+        } else {
+            ASSERT_EQ(contact.min_gap(x), gap);
+        }
+        ASSERT_NEAR(contact.value(x), energy, 1e-9 * energy);
+    }
+    EXPECT_GT(active_count, 5'000);
+    EXPECT_GT(gap_count, 20);
+}
+
+} // namespace
+} // namespace plisse
