@@ -105,10 +105,6 @@ public:
         if (value != 0)
             at_.member(*find(key)).fail_later(fmt::format("\"{}\" other than 0", key), "give 0 or leave it out");
     }
-    void null_for_now(const char* key, const char*) {
-        if (const JsonMember* member = find(key); member && member->value.kind != Kind::null)
-            at_.member(*member).fail_later(fmt::format("\"{}\"", key), "give null or leave it out");
-    }
     void check(bool holds, const char* key, const std::string& wrong, const std::string& right) const {
         if (holds)
             return;

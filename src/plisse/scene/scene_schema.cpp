@@ -150,9 +150,6 @@ public:
         add(key, {{"type", "number"}, {"minimum", 0}, {"default", 0}},
             doc + std::string("; other than 0") + later_note);
     }
-    void null_for_now(const char* key, const char* doc) {
-        add(key, {{"type", {"number", "null"}}, {"default", nullptr}}, doc + std::string(later_note));
-    }
     void check(bool, const char*, const char*, const char*) const {}
     void version(const char* key, const char* doc) {
         add(key, {{"const", 1}}, doc);
