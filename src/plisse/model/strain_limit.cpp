@@ -10,7 +10,7 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-constexpr double strength = 1;      // of the barrier, by the membrane's stiffness
+constexpr double strength = 10;     // of the barrier, by the membrane's stiffness
 constexpr double raised_room = 0.3; // by the width, between a stretch and the limit that was raised for it
 
 } // namespace

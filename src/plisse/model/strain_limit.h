@@ -7,7 +7,7 @@
 namespace plisse {
 
 /// The strain limits of all bodies on the mesh of one level: a barrier on the stretches of the faces of bodies that
-/// have one, which begins to act half way to the limit and is about as stiff there as the membrane
+/// have one, which begins to act half way to the limit and is stiffer there than the membrane
 /// (docs/decisions/0013).
 class StrainLimit {
 public:
