@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <plisse/contact/barrier.h>
+#include <plisse/geometry/barrier.h>
 #include <plisse/geometry/ccd.h>
 #include <plisse/geometry/mollifier.h>
 

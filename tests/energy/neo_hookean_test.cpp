@@ -76,13 +76,13 @@ TEST_P(NeoHookean, StressAgreesWithDifferences) {
 TEST_P(NeoHookean, HessianAgreesWithDifferences) {
     const auto stress = [&](const VecX& f) { return as_entries(neo_hookean_stress(as_matrix(f), lame)); };
     const Eigen::MatrixXd differences = central_differences(stress, as_entries(F()), 1e-6);
-    const Mat6 hessian = neo_hookean_hessian(neo_hookean_modes(F(), lame, false));
+    const Mat6 hessian = plisse::hessian(neo_hookean_modes(F(), lame, false));
     EXPECT_LT((differences - hessian).norm(), 1e-6 * hessian.norm());
 }
 
 TEST_P(NeoHookean, ProjectionIsThatOfAGeneralEigenSolver) {
-    const Mat6 exact = neo_hookean_hessian(neo_hookean_modes(F(), lame, false));
-    const Mat6 projected = neo_hookean_hessian(neo_hookean_modes(F(), lame, true));
+    const Mat6 exact = plisse::hessian(neo_hookean_modes(F(), lame, false));
+    const Mat6 projected = plisse::hessian(neo_hookean_modes(F(), lame, true));
     EXPECT_LT((projected - general_positive_part(exact)).norm(), 1e-10 * exact.norm());
 }
 
@@ -96,8 +96,8 @@ TEST_P(NeoHookean, PullBackIsTheChainRule) {
             jacobian.block<3, 3>(3 * column, 0) -= inverse(k - 1, column) * Mat3::Identity();
         }
     for (bool project : {false, true}) {
-        const NeoHookeanModes modes = neo_hookean_modes(F(), lame, project);
-        const Mat9 expected = 0.7 * jacobian.transpose() * neo_hookean_hessian(modes) * jacobian;
+        const StretchModes modes = neo_hookean_modes(F(), lame, project);
+        const Mat9 expected = 0.7 * jacobian.transpose() * plisse::hessian(modes) * jacobian;
         EXPECT_LT((pull_back(modes, inverse, 0.7) - expected).norm(), 1e-13 * expected.norm());
     }
 }
@@ -112,7 +112,7 @@ TEST_P(NeoHookean, PrincipalStretchesAreSingularValues) {
 INSTANTIATE_TEST_SUITE_P(All, NeoHookean, ::testing::ValuesIn(deformations()));
 
 TEST(NeoHookeanLimits, ProjectionDoesSomething) {
-    const NeoHookeanModes modes = neo_hookean_modes(rotated(0.8, 0.7, 0.1, 1), plane_stress_lame(1, 0.3), true);
+    const StretchModes modes = neo_hookean_modes(rotated(0.8, 0.7, 0.1, 1), plane_stress_lame(1, 0.3), true);
     EXPECT_EQ(modes.lift[0], 0);
     EXPECT_EQ(modes.lift[1], 0);
 }

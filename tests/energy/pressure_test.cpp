@@ -130,7 +130,7 @@ double balancing_pressure(const TriangleMesh& sphere, double nu, double stretch)
     const double inward = as_positions(skin_forces).cwiseProduct(sphere.positions).sum();
     const double outward = -pressure_gradient(gas, x).cwiseProduct(sphere.positions).sum();
     double area = 0;
-    for (double a : skin.rest_areas())
+    for (double a : skin.triangles().areas())
         area += a;
     const double radius = 3 * gas.volume(sphere.positions) / area;
     return inward / outward * radius / (lame.mu * thickness);

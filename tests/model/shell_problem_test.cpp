@@ -62,6 +62,41 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(0, 1, 2), testing::Values(BendingOn::finest, BendingOn::level),
                      testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic)));
 
+/// The limit acts on the level's own faces, whatever carries the elasticity.
+TEST(ShellProblem, FeelsStrainLimitsOnEveryLevel) {
+    for (BendingOn bending_on : {BendingOn::finest, BendingOn::level}) {
+        Model model = loaded_model(bending_on, ProlongationOperator::shell);
+        model.bodies[0].material.strain_limit = 1.3;
+        Context context;
+        const Discretization discretization(model, 3, context);
+        for (int level = 0; level < 3; ++level) {
+            ShellProblem problem(discretization, level, EnergiesOf::finest, context);
+            const Positions start = discretization.start(level);
+            problem.begin_step(start, start, 0, 0.1);
+            Random random(3);
+            VecX x = as_vector(start);
+            for (Eigen::Index i = 0; i < x.size(); ++i)
+                if (!problem.system().prescribed()[static_cast<std::size_t>(i)])
+                    x[i] = 1.2 * x[i] + random.uniform(-5e-4, 5e-4) + (i % 3 == 1 ? 0.03 : 0);
+            EXPECT_GT(problem.energies(x).strain_limit, 0);
+            EXPECT_GT(problem.forces(x).strain_limit.cwiseAbs().maxCoeff(), 0);
+            VecX gradient;
+            problem.gradient(x, gradient);
+            for (int direction = 0; direction < 5; ++direction) {
+                const VecX d = VecX::NullaryExpr(x.size(), [&] { return random.uniform(-1, 1); });
+                const double h = 1e-7;
+                const double difference = (problem.value(x + h * d) - problem.value(x - h * d)) / (2 * h);
+                EXPECT_NEAR(difference, gradient.dot(d), 1e-6 * gradient.norm() * d.norm());
+            }
+            const VecX away = 10 * (x - as_vector(start));
+            const double step = problem.max_step(x, away);
+            EXPECT_GT(step, 0);
+            EXPECT_LT(problem.max_stretch(x + step * away), 1.3);
+            EXPECT_GT(problem.max_stretch(x + 2 * step * away), 1.3);
+        }
+    }
+}
+
 TEST(ShellProblem, RecoversRestAndFeelsNothingThereOnEveryLevel) {
     Context context;
     Model model = loaded_model(BendingOn::finest, ProlongationOperator::shell);

@@ -37,7 +37,7 @@ RunReport sample_report() {
     level.vertices = 4;
     level.min_gap = infinity;
     level.max_stretch = 1.1;
-    level.energy = {0.1, 0.2, 0, -1e-17, 0.7};
+    level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
     level.seconds[Phase::ccd] = 0.1 + 0.2;
     level.total_seconds = 2.0 / 3;
     report.levels = {level};

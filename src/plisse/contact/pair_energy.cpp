@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <plisse/contact/barrier.h>
+#include <plisse/geometry/barrier.h>
 #include <plisse/geometry/mollifier.h>
 
 namespace plisse {

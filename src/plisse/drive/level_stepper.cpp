@@ -254,7 +254,8 @@ void LevelStepper::save_checkpoint(double t) {
 void LevelStepper::measure() {
     LevelReport& report = log_.level_report(level_);
     const EnergyBreakdown energies = problem_.energies(x_);
-    report.energy = {energies.elastic, energies.contact, energies.friction, energies.gravity, energies.loads};
+    report.energy = {energies.elastic,  energies.strain_limit, energies.contact,
+                     energies.friction, energies.gravity,      energies.loads};
     report.residual = problem_.residual(x_);
     report.min_gap = problem_.min_gap(x_);
     report.max_stretch = problem_.max_stretch(x_);

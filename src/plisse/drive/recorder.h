@@ -26,7 +26,7 @@ struct IterationRecord {
 };
 
 struct EnergyParts {
-    double elastic = 0, contact = 0, friction = 0, gravity = 0, loads = 0; ///< J
+    double elastic = 0, strain_limit = 0, contact = 0, friction = 0, gravity = 0, loads = 0; ///< J
 };
 
 /// What became of one level; the fields of report.json's "levels".
@@ -34,7 +34,7 @@ struct LevelReport {
     int level = 0, vertices = 0, faces = 0, steps = 0, newton_iterations = 0;
     bool equilibrium = false;
     double min_gap = 0;     ///< m; infinity where no pair is in contact range
-    double max_stretch = 1; ///< largest principal stretch
+    double max_stretch = 1; ///< largest principal stretch of the level's own faces
     double residual = 0;    ///< largest nodal force of the total over the largest of any one term
     EnergyParts energy;
     PhaseTimes seconds;
@@ -43,6 +43,8 @@ struct LevelReport {
 
 struct RefinementReport {
     int from = 0, to = 0, expansions = 0, colors = 0, first_try = 0, sampled = 0, relaxed = 0, deferred = 0;
+    int over_limit = 0;              ///< faces that were at their strain limit or beyond, and were brought within it
+    int strain_limit_iterations = 0; ///< of Newton's method, to bring them there
     double min_gap = 0;
     double total_seconds = 0;
 };

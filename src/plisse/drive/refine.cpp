@@ -7,6 +7,7 @@
 
 #include <plisse/base/parallel.h>
 #include <plisse/drive/batch_motion.h>
+#include <plisse/drive/limit_relaxation.h>
 #include <plisse/drive/patch_relaxation.h>
 #include <plisse/drive/run_fraction.h>
 #include <plisse/drive/safe_perturbation.h>
@@ -96,6 +97,15 @@ private:
     Context& context_;
 };
 
+/// Per vertex of the level after `from`: whether it has come with it.
+std::vector<std::uint8_t> new_vertices(const Discretization& discretization, int from) {
+    const std::vector<int>& before = discretization.mesh(from).vertex_ids;
+    std::vector<std::uint8_t> is_new;
+    for (int id : discretization.mesh(from + 1).vertex_ids)
+        is_new.push_back(!std::binary_search(before.begin(), before.end(), id));
+    return is_new;
+}
+
 } // namespace
 
 RefineResult refine(const Discretization& discretization, int from, const Positions& x, double t, Context& context) {
@@ -133,8 +143,19 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
         shown.fraction = run.in_refinement(from + 1, shown.step / static_cast<double>(coarse.batches.size()));
         context.on_progress(shown);
     }
-    result.positions = mesh.level_positions(from + 1);
-    result.complete = true;
+    Positions expanded = mesh.level_positions(from + 1);
+    const LimitRelaxationResult relaxed =
+        relax_to_strain_limits(discretization, from + 1, new_vertices(discretization, from), expanded, context);
+    if (context.cancelled()) {
+        result.cancelled = true;
+        return result;
+    }
+    result.report.over_limit = relaxed.over_limit;
+    result.report.strain_limit_iterations = relaxed.iterations;
+    result.message = relaxed.message;
+    result.complete = relaxed.within;
+    if (result.complete)
+        result.positions = expanded;
     result.report.total_seconds = watch.seconds();
     return result;
 }

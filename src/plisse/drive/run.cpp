@@ -10,6 +10,7 @@
 #include <plisse/drive/level_stepper.h>
 #include <plisse/drive/refine.h>
 #include <plisse/mesh/intersecting_surfaces.h>
+#include <plisse/model/strain_limit.h>
 #include <plisse/spatial/box.h>
 #include <plisse/spatial/intersections.h>
 
@@ -43,6 +44,7 @@ private:
     bool run_level(LevelStepper& stepper);
     std::optional<Positions> refine_from(int level, const Positions& x);
     void check_start(const Positions& x) const;
+    void check_limits(int level, const Positions& x) const;
     void finish(LevelStepper& stepper);
     void find_lagging(LevelStepper& stepper);
     void find_reactions(LevelStepper& stepper);
@@ -111,6 +113,21 @@ void Driver::check_start(const Positions& x) const {
     throw IntersectingSurfaces(error, x, faces, pairs, part);
 }
 
+void Driver::check_limits(int level, const Positions& x) const {
+    const StrainLimit::Excess excess = StrainLimit(discretization_, level).excess(x, 2 * StrainLimitEnergy::least_room);
+    if (excess.faces == 0)
+        return;
+    const bool as_given = level == discretization_.finest();
+    throw InputError(model_.name,
+                     fmt::format("{} faces{} are stretched beyond their strain limit at the start: one of \"{}\" near "
+                                 "({:.6g}, {:.6g}, {:.6g}) to {:.6g}, and its limit is {:.6g}",
+                                 excess.faces, as_given ? "" : fmt::format(" of level {}", level),
+                                 model_.bodies[at(excess.body)].name, excess.place.x(), excess.place.y(),
+                                 excess.place.z(), excess.stretch, excess.limit),
+                     as_given ? "a start that is stretched less, or a higher `strain_limit`"
+                              : "use fewer levels, more coarsest_vertices, or method `direct`");
+}
+
 Checkpoint Driver::fresh_progress(int level, const Positions& x) const {
     Checkpoint progress;
     progress.level = level;
@@ -176,6 +193,8 @@ bool Driver::simulate() {
         progress = fresh_progress(first_level_, discretization_.start(first_level_));
         progress.t = 0;
         check_start(progress.positions);
+        check_limits(discretization_.finest(), discretization_.start(discretization_.finest()));
+        check_limits(first_level_, progress.positions);
     }
     for (int level = progress.level;; ++level) {
         const EnergiesOf energies = is_direct(model_) ? EnergiesOf::level : EnergiesOf::finest;

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <plisse/base/types.h>
+#include <plisse/energy/stretch_modes.h>
 
 namespace plisse {
-
-using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Mat9 = Eigen::Matrix<double, 9, 9>;
 
 /// Lame parameters, Pa. The neo-Hookean membrane per unit of rest volume, as a function of the 3x2 deformation gradient
 /// F with C = F^T F and J = sqrt(det C):
@@ -26,29 +23,7 @@ double neo_hookean_value(const Mat32& F, const Lame& lame);
 /// P = dw/dF, Pa; det C must be positive.
 Mat32 neo_hookean_stress(const Mat32& F, const Lame& lame);
 
-/// Singular values of F, the larger first: the principal stretches.
-Vec2 principal_stretches(const Mat32& F);
-
-/// The eigen-system of d2w/dF2 in closed form. With F = s1 u1 v1^T + s2 u2 v2^T and n = u1 x u2 its eigen-vectors are
-///   the span of u1 v1^T and u2 v2^T            `stretch`, a 2x2 matrix
-///   (u1 v2^T - u2 v1^T)/sqrt2                  `twist`
-///   (u1 v2^T + u2 v1^T)/sqrt2                  `flip`
-///   n v1^T and n v2^T                          `lift`
-/// All values are free of differences of s1 and s2, so nothing happens where these coincide.
-struct NeoHookeanModes {
-    Mat3 left;  ///< columns u1, u2, n
-    Mat2 right; ///< columns v1, v2
-    Mat2 stretch;
-    double twist, flip;
-    Vec2 lift;
-};
-/// project: eigenvalues below zero become zero. det C must be positive.
-NeoHookeanModes neo_hookean_modes(const Mat32& F, const Lame& lame, bool project);
-
-/// d2w/dF2 over the entries of F column by column, Pa.
-Mat6 neo_hookean_hessian(const NeoHookeanModes& modes);
-
-/// Hessian over the three corners of a triangle, 9x9, where F = (x1 - x0, x2 - x0) inverse; times `scale`.
-Mat9 pull_back(const NeoHookeanModes& modes, const Mat2& inverse, double scale);
+/// The eigen-system of d2w/dF2 in closed form. project: eigenvalues below zero become zero. det C must be positive.
+StretchModes neo_hookean_modes(const Mat32& F, const Lame& lame, bool project);
 
 } // namespace plisse

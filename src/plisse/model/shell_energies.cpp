@@ -46,11 +46,8 @@ std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& re
 ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const std::vector<Face>& faces,
                              const std::vector<int>& face_body, Parts parts)
     : model_(model), vertex_count_(static_cast<int>(rest.cols())) {
-    if (parts.membrane) {
-        auto membrane = make_membrane(model, rest, faces, face_body);
-        membrane_ = membrane.get();
-        add_term(std::move(membrane));
-    }
+    if (parts.membrane)
+        add_term(make_membrane(model, rest, faces, face_body));
     if (parts.bending)
         add_term(make_hinges(model, rest, faces, face_body));
     if (!parts.pressure)
@@ -131,10 +128,6 @@ Positions ShellEnergies::open_pressure_forces(const Positions& y, double t) cons
     for (const OpenBody& open : open_)
         forces += pressure_forces(y, open.faces, model_.bodies[at(open.body)].pressure.at(t));
     return forces;
-}
-
-double ShellEnergies::largest_stretch(const Positions& y) const {
-    return membrane_ ? membrane_->largest_stretch(y) : 1;
 }
 
 } // namespace plisse

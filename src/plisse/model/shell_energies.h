@@ -40,7 +40,6 @@ public:
 
     /// Forces of pressure on open bodies with the normals of y, frozen (N per vertex).
     Positions open_pressure_forces(const Positions& y, double t) const;
-    double largest_stretch(const Positions& y) const;
 
 private:
     struct Term {
@@ -61,7 +60,6 @@ private:
     const Model& model_;
     int vertex_count_;
     std::vector<Term> elastic_;
-    const MembraneEnergy* membrane_ = nullptr;
     std::vector<ClosedBody> closed_;
     std::vector<OpenBody> open_;
 };

@@ -1,6 +1,7 @@
 #include <plisse/model/shell_problem.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -75,7 +76,9 @@ struct ShellProblem::Carrier {
 };
 
 ShellProblem::ShellProblem(const Discretization& discretization, int level, EnergiesOf energies_of, Context& context)
-    : discretization_(discretization), context_(context), level_(level), dead_loads_(discretization) {
+    : discretization_(discretization), context_(context), level_(level), dead_loads_(discretization),
+      triangles_(discretization.mesh(level).rest, discretization.layout(level).body_faces),
+      strain_limit_(discretization, level) {
     const Model& model = discretization.model();
     const HierarchyLevel& mesh = discretization.mesh(level);
     const LevelLayout& layout = discretization.layout(level);
@@ -129,7 +132,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     friction_ = std::make_unique<Friction>(
         contact_->mesh(),
         FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model)});
-    build_system();
+    build_system(layout.prescribed);
 
     double elastic_scale = 0;
     for (const Body& body : model.bodies)
@@ -145,7 +148,7 @@ bool ShellProblem::uses_galerkin() const {
     return discretization_.model().solve.curvature != Curvature::own;
 }
 
-void ShellProblem::build_system() {
+void ShellProblem::build_system(const std::vector<std::uint8_t>& prescribed) {
     std::vector<Edge> pairs;
     const auto append = [&](const std::vector<Edge>& more) { pairs.insert(pairs.end(), more.begin(), more.end()); };
     append(contact_->mesh().edges); // which contact couples too
@@ -161,7 +164,7 @@ void ShellProblem::build_system() {
     for (int v = 0; v < vertex_count(); ++v)
         pairs.push_back({v, v});
     std::sort(pairs.begin(), pairs.end()); // blocks of neighbours near each other
-    system_ = NewtonSystem(discretization_.layout(level_).prescribed, pairs);
+    system_ = NewtonSystem(prescribed, pairs);
 
     if (carrier_ && !curvature_) {
         elasticity_->place_in(carrier_->fine_hessian);
@@ -171,6 +174,7 @@ void ShellProblem::build_system() {
     }
     if (level_bending_)
         level_bending_->place_in(system_);
+    strain_limit_.place_in(system_);
 }
 
 void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h, bool is_first) {
@@ -181,6 +185,20 @@ void ShellProblem::begin_step(const Positions& current, const Positions& anchor,
 void ShellProblem::begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory) {
     set_step(current, current, t, h);
     begin_friction(current, memory, memory.reference.cols() == 0);
+}
+
+void ShellProblem::begin_relaxation(const Positions& current, const std::vector<std::uint8_t>& held, double least_room,
+                                    double stiffening) {
+    assert(!carrier_);
+    strain_limit_.raise(current, least_room, stiffening);
+    build_system(held);
+    targets_ = as_vector(current);
+    anchor_ = current;
+    const double h = discretization_.model().solve.time_step;
+    inverse_h_squared_ = 1 / (h * h);
+    gravity_forces_ = load_forces_ = Positions::Zero(3, current.cols());
+    contact_->forget();
+    x_memo_.resize(3, 0);
 }
 
 void ShellProblem::begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first) {
@@ -255,7 +273,7 @@ double ShellProblem::value(const VecX& x) {
     double inertia = 0;
     for (int v = 0; v < points.cols(); ++v)
         inertia += mass_[v] * (points.col(v) - anchor_.col(v)).squaredNorm();
-    return parts.elastic + parts.contact + parts.friction + parts.gravity + parts.loads +
+    return parts.elastic + parts.strain_limit + parts.contact + parts.friction + parts.gravity + parts.loads +
            0.5 * inverse_h_squared_ * inertia;
 }
 
@@ -269,8 +287,9 @@ EnergyBreakdown ShellProblem::energies(const VecX& x) {
         parts.loads = elasticity_->pressure_value(y) - load_forces_.cwiseProduct(y).sum();
         if (level_bending_)
             parts.elastic += level_bending_->elastic_value(x_memo_);
+        parts.strain_limit = strain_limit_.value(x_memo_);
     }
-    if (!std::isfinite(parts.elastic))
+    if (!std::isfinite(parts.elastic + parts.strain_limit))
         return parts;
     const Positions& points = level_positions(x);
     parts.contact = contact_->value(points);
@@ -291,6 +310,7 @@ void ShellProblem::gradient(const VecX& x, VecX& gradient) {
         sum = pull_back(x, on_carrier);
         if (level_bending_)
             level_bending_->add_elastic_gradient(points, sum);
+        strain_limit_.add_gradient(points, sum);
         for (int v = 0; v < points.cols(); ++v)
             sum.col(v) += inverse_h_squared_ * mass_[v] * (points.col(v) - anchor_.col(v));
     }
@@ -310,6 +330,9 @@ NodalForces ShellProblem::forces(const VecX& x) {
     if (level_bending_)
         level_bending_->add_elastic_gradient(points, result.elastic);
     result.elastic *= -1;
+    result.strain_limit = Positions::Zero(3, vertex_count());
+    strain_limit_.add_gradient(points, result.strain_limit);
+    result.strain_limit *= -1;
     Positions pressure = Positions::Zero(3, y.cols());
     elasticity_->add_pressure_gradient(y, pressure);
     result.loads = pull_back(x, load_forces_ - pressure);
@@ -348,6 +371,7 @@ void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
         }
         if (level_bending_)
             level_bending_->add_hessian(points, system, project);
+        strain_limit_.add_hessian(points, system);
     }
     contact_->add_hessian(points, system, project);
     PhaseScope scope(context_.times, Phase::contact);
@@ -359,6 +383,7 @@ double ShellProblem::max_step(const VecX& x, const VecX& d) {
     const Positions points = level_positions(x);
     double alpha = contact_->max_step(points, direction);
     PhaseScope scope(context_.times, Phase::ccd);
+    alpha *= strain_limit_.max_step(points, alpha * direction);
     alpha = std::min(alpha, largest_regular_step(discretization_.layout(level_).body_faces, points, alpha * direction) *
                                 alpha);
     if (carrier_) {
@@ -378,8 +403,8 @@ double ShellProblem::residual(const VecX& x) {
             total.data()[i] = 0;
     const double largest_total = largest_norm(total);
     const double largest_term =
-        std::max({largest_norm(nodal.elastic), largest_norm(nodal.contact), largest_norm(nodal.friction),
-                  largest_norm(nodal.gravity), largest_norm(nodal.loads)});
+        std::max({largest_norm(nodal.elastic), largest_norm(nodal.strain_limit), largest_norm(nodal.contact),
+                  largest_norm(nodal.friction), largest_norm(nodal.gravity), largest_norm(nodal.loads)});
     return largest_total <= force_round_off_ ? 0.0 : largest_total / largest_term;
 }
 
@@ -396,7 +421,7 @@ void ShellProblem::enforce_thickness(double share, double stiffness_factor) {
 }
 
 double ShellProblem::max_stretch(const VecX& x) {
-    return elasticity_->largest_stretch(carried(x));
+    return triangles_.largest_stretch(level_positions(x));
 }
 
 int ShellProblem::active_contacts(const VecX& x) {

@@ -7,6 +7,7 @@
 #include <plisse/contact/friction.h>
 #include <plisse/model/dead_loads.h>
 #include <plisse/model/shell_energies.h>
+#include <plisse/model/strain_limit.h>
 #include <plisse/solve/objective.h>
 #include <plisse/transfer/galerkin.h>
 
@@ -20,16 +21,17 @@ enum class EnergiesOf {
 
 /// Forces per vertex of the level by term (N, the negative gradients).
 struct NodalForces {
-    Positions elastic, contact, friction, gravity, loads;
-    Positions total() const { return elastic + contact + friction + gravity + loads; }
+    Positions elastic, strain_limit, contact, friction, gravity, loads;
+    Positions total() const { return elastic + strain_limit + contact + friction + gravity + loads; }
 };
 
 struct EnergyBreakdown {
-    double elastic = 0, contact = 0, friction = 0, gravity = 0, loads = 0;
+    double elastic = 0, strain_limit = 0, contact = 0, friction = 0, gravity = 0, loads = 0;
 };
 
-/// F_l of PSQ equations 2 and 3 as an Objective: barrier contact, friction and inertia on level l's mesh, elasticity
-/// and loads on the finest mesh through the direct prolongation P^l (or on level l itself), over one time step.
+/// F_l of PSQ equations 2 and 3 as an Objective: barrier contact, friction, strain limit and inertia on level l's mesh,
+/// elasticity and loads on the finest mesh through the direct prolongation P^l (or on level l itself), over one time
+/// step.
 class ShellProblem : public Objective {
 public:
     /// The discretization must outlive the problem.
@@ -46,6 +48,10 @@ public:
     /// Starts a step of settling: the same with inertia about `current`, and contacts that carry on what they remember,
     /// or grip where nothing has come before.
     void begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory);
+    /// Starts a step from a state beyond strain limits, for a problem of the level's own energies: no loads, no
+    /// friction, and limits raised as StrainLimit::raise does. held: the unknowns that stay where they are.
+    void begin_relaxation(const Positions& current, const std::vector<std::uint8_t>& held, double least_room,
+                          double stiffening);
     /// What contacts remember of the step begun last.
     const FrictionMemory& friction_memory() const { return friction_->memory(); }
     /// Lets contacts take in that the step has ended at x.
@@ -74,7 +80,7 @@ public:
     double least_thickness_share(const VecX& x);
     /// As Contact's enforce().
     void enforce_thickness(double share, double stiffness_factor = 1);
-    /// Largest principal stretch of the mesh that carries the membrane.
+    /// Largest principal stretch of the bodies on the level's own mesh, which is what frames hold.
     double max_stretch(const VecX& x);
     int active_contacts(const VecX& x);
     /// Positions of the mesh that carries the elasticity.
@@ -85,7 +91,7 @@ private:
     const Positions& level_positions(const VecX& x);
     Positions pull_back(const VecX& x, const Positions& carried_gradient);
     bool uses_galerkin() const;
-    void build_system();
+    void build_system(const std::vector<std::uint8_t>& prescribed);
     void set_step(const Positions& current, const Positions& anchor, double t, double h);
     void begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first);
     std::vector<Edge> coupled_pairs(const Positions& points);
@@ -99,6 +105,8 @@ private:
     std::unique_ptr<ShellEnergies> elasticity_;    ///< on the carrying mesh
     std::unique_ptr<ShellEnergies> level_bending_; ///< when bending_on is level
     std::unique_ptr<ShellEnergies> curvature_;     ///< the level's own Hessian, when curvature is own
+    RestTriangles triangles_;                      ///< of the bodies, on the level
+    StrainLimit strain_limit_;
     std::unique_ptr<Contact> contact_;
     std::unique_ptr<Friction> friction_;
     NewtonSystem system_;

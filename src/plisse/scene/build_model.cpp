@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <plisse/energy/rest_triangles.h>
 #include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
@@ -35,6 +36,8 @@ public:
         model_.hierarchy = scene_.hierarchy;
         model_.solve = scene_.solve;
         expect_no_intersections();
+        for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+            expect_within_limit(model_.bodies[b], fmt::format("/bodies/{}", b));
         return std::move(model_);
     }
 
@@ -198,6 +201,29 @@ private:
                                          faces[static_cast<std::size_t>(pair[1])]);
         return fmt::format("{} and {} near ({:.6g}, {:.6g}, {:.6g})", face_name(pair[0]), face_name(pair[1]), place.x(),
                            place.y(), place.z());
+    }
+
+    void expect_within_limit(const Body& body, const std::string& pointer) const {
+        if (!body.material.strain_limit)
+            return;
+        const auto first = model_.mesh.faces.begin() + body.faces.begin;
+        const RestTriangles triangles(model_.mesh.positions, {first, first + body.faces.size()});
+        int worst = 0;
+        for (int f = 0; f < triangles.count(); ++f)
+            if (triangles.principal_stretches(f, model_.start)[0] >
+                triangles.principal_stretches(worst, model_.start)[0])
+                worst = f;
+        const double stretch = triangles.principal_stretches(worst, model_.start)[0];
+        if (stretch < *body.material.strain_limit)
+            return;
+        const Vec3 place = model_.start.col(triangles.face(worst)[0]);
+        throw scene_.error_at(
+            pointer,
+            fmt::format("{} is stretched to {:.6g} at the start, near ({:.6g}, {:.6g}, {:.6g}), and the strain "
+                        "limit is {:.6g}",
+                        face_name(body.faces.begin + worst), stretch, place.x(), place.y(), place.z(),
+                        *body.material.strain_limit),
+            "give a `start` that is stretched less, or a higher `strain_limit`");
     }
 
     std::string part_pointer(int part) const {

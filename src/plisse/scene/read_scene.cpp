@@ -99,10 +99,6 @@ public:
             field(key, value.emplace(), doc);
     }
     bool lists_what_is_there() const { return false; }
-    void null_for_now(const char* key, const char*) {
-        if (const JsonMember* member = find(key); member && member->value.kind != Kind::null)
-            at_.member(*member).fail_later(fmt::format("\"{}\"", key), "give null or leave it out");
-    }
     void check(bool holds, const char* key, const std::string& wrong, const std::string& right) const {
         if (holds)
             return;

@@ -55,6 +55,7 @@ Json level_json(const LevelReport& level) {
             {"residual", finite_or_null(level.residual)},
             {"energy",
              {{"elastic", level.energy.elastic},
+              {"strain_limit", level.energy.strain_limit},
               {"contact", level.energy.contact},
               {"friction", level.energy.friction},
               {"gravity", level.energy.gravity},
@@ -75,6 +76,7 @@ LevelReport level_from(const Json& json) {
     level.residual = number_or_infinity(json.at("residual"));
     const Json& energy = json.at("energy");
     level.energy.elastic = number_or_infinity(energy.at("elastic"));
+    level.energy.strain_limit = number_or_infinity(energy.at("strain_limit"));
     level.energy.contact = number_or_infinity(energy.at("contact"));
     level.energy.friction = number_or_infinity(energy.at("friction"));
     level.energy.gravity = number_or_infinity(energy.at("gravity"));
@@ -93,6 +95,8 @@ Json refinement_json(const RefinementReport& refinement) {
             {"sampled", refinement.sampled},
             {"relaxed", refinement.relaxed},
             {"deferred", refinement.deferred},
+            {"over_limit", refinement.over_limit},
+            {"strain_limit_iterations", refinement.strain_limit_iterations},
             {"min_gap", finite_or_null(refinement.min_gap)},
             {"seconds", {{"total", refinement.total_seconds}}}};
 }
@@ -107,6 +111,8 @@ RefinementReport refinement_from(const Json& json) {
     json.at("sampled").get_to(refinement.sampled);
     json.at("relaxed").get_to(refinement.relaxed);
     json.at("deferred").get_to(refinement.deferred);
+    json.at("over_limit").get_to(refinement.over_limit);
+    json.at("strain_limit_iterations").get_to(refinement.strain_limit_iterations);
     refinement.min_gap = number_or_infinity(json.at("min_gap"));
     json.at("seconds").at("total").get_to(refinement.total_seconds);
     return refinement;

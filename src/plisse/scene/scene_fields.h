@@ -16,7 +16,6 @@ namespace plisse {
 ///   required(key, value, doc)            a key that may not
 ///   field_if(applies, key, value, limits, doc)   a key that other keys' values rule out
 ///   alternative(key, optional, doc)      one of several keys of which the object has one
-///   null_for_now(key, doc)               anything but null is for a later version
 ///   check(holds, key, wrong, right)      what one key's type cannot say; only the reader minds
 ///   lists_what_is_there()                whether the object holds what is to be listed: true for the writer alone
 ///   version(key, doc)                    the format's version
@@ -165,7 +164,8 @@ void describe(Visitor& v, Material& m) {
     v.field(
         "bending_scale", m.bending_scale, not_negative,
         "factor of the bending energy: 1 is exact for a sheet rolled along mesh lines, 3 compares with public codes");
-    v.null_for_now("strain_limit", "largest principal stretch, such as 1.1");
+    v.field("strain_limit", m.strain_limit, Limits{1.0001, 100},
+            "largest principal stretch, such as 1.1, which no triangle of any level passes; null: none");
 }
 
 template <typename Visitor>

@@ -146,9 +146,6 @@ public:
         alternatives_.push_back({{"required", {key}}});
     }
     bool lists_what_is_there() const { return false; }
-    void null_for_now(const char* key, const char* doc) {
-        add(key, {{"type", {"number", "null"}}, {"default", nullptr}}, doc + std::string(later_note));
-    }
     void check(bool, const char*, const char*, const char*) const {}
     void version(const char* key, const char* doc) {
         add(key, {{"const", 1}}, doc);

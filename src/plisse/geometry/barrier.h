@@ -5,8 +5,9 @@
 
 namespace plisse {
 
-/// The barrier b(X) = -(X - 1)^2 ln X of a squared distance X relative to the activation distance's square, 0 from X =
-/// 1 on and infinite down to 0 (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives.
+/// The barrier b(X) = -(X - 1)^2 ln X, 0 from X = 1 on and infinite down to 0, of what is left of some room, relative
+/// to where it begins to act (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives. Contact's
+/// X is a squared distance.
 struct Barrier {
     double value = 0, first = 0, second = 0;
 };
