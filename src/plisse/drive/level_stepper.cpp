@@ -23,6 +23,7 @@ LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     case NewtonEnd::iteration_cap:
         return LevelStepper::Outcome::cut_short;
     case NewtonEnd::stalled:
+    case NewtonEnd::blocked:
         return LevelStepper::Outcome::stalled;
     case NewtonEnd::cancelled:
         break;
@@ -101,11 +102,13 @@ NewtonSummary LevelStepper::solve_step(double t, double tolerance, const char* p
             shown.gap = problem_.min_gap(x_);
             log_.context().on_progress(shown);
             log_.iteration({level_, shown.step, iteration.iteration, t, iteration.value, shown.step_norm, shown.gap,
-                            log_.seconds(), iteration.step_length});
+                            log_.seconds(), iteration.step_length, iteration.limit});
         });
     report.newton_iterations += summary.iterations;
-    if (summary.end == NewtonEnd::stalled)
-        log_.context().on_message(fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message));
+    if (summary.end != NewtonEnd::converged)
+        trouble_ = fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message);
+    if (summary.end == NewtonEnd::stalled || summary.end == NewtonEnd::blocked)
+        log_.context().on_message(trouble_);
     return summary;
 }
 
@@ -119,6 +122,8 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
         gripped = false;
         if (update == most_friction_updates || whole.iterations == most_iterations) {
             whole.end = NewtonEnd::iteration_cap;
+            trouble_ = fmt::format("level {}, t = {:.4g} s: the forces of friction have not come to rest in {} updates",
+                                   level_, t, update);
             break;
         }
         part = solve_step(t, tolerance, phase, most_iterations - whole.iterations);

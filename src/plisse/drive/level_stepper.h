@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <plisse/drive/run_log.h>
@@ -30,6 +31,9 @@ public:
     /// One step at time t, as a level gets that is not to settle.
     Outcome step_once(double t);
 
+    /// Why the last step that was cut short or stalled was so, in words; empty where none was.
+    const std::string& trouble() const { return trouble_; }
+
     /// Brings the level's part of the report up to date.
     void measure();
 
@@ -58,6 +62,7 @@ private:
     SparseCholesky cholesky_;
     VecX x_;
     Checkpoint progress_;
+    std::string trouble_;
     PhaseTimes times_at_start_;
     Stopwatch watch_;
 };

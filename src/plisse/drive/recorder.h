@@ -7,6 +7,7 @@
 #include <plisse/base/context.h>
 #include <plisse/contact/friction.h>
 #include <plisse/decimate/hierarchy.h>
+#include <plisse/solve/objective.h>
 
 namespace plisse {
 
@@ -23,6 +24,7 @@ struct Frame {
 struct IterationRecord {
     int level = 0, step = 0, iteration = 0;
     double t = 0, energy = 0, step_norm = 0, gap = 0, seconds = 0, step_length = 0;
+    StepLimit limit; ///< what has been cutting steps short; empty where it is not news
 };
 
 struct EnergyParts {

@@ -127,8 +127,9 @@ bool Driver::run_level(LevelStepper& stepper) {
         if (outcome == Outcome::cancelled)
             return false;
         if (outcome != Outcome::done && level == last_level_)
-            fail(RunStatus::not_converged, outcome == Outcome::stalled ? "a step of the timeline stalled"
-                                                                       : "a step of the timeline was cut short");
+            fail(RunStatus::not_converged, fmt::format("a step of the timeline {} ({})",
+                                                       outcome == Outcome::stalled ? "stalled" : "was cut short",
+                                                       stepper.trouble()));
     }
     const Outcome outcome = model_.solve.settle     ? stepper.settle(duration_)
                             : level == first_level_ ? Outcome::done
@@ -136,7 +137,9 @@ bool Driver::run_level(LevelStepper& stepper) {
     if (outcome == Outcome::cancelled)
         return false;
     if (outcome != Outcome::done && (model_.solve.settle || level == last_level_))
-        fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium", level));
+        fail(RunStatus::not_converged,
+             fmt::format("level {} did not reach equilibrium{}", level,
+                         stepper.trouble().empty() ? "" : " (" + stepper.trouble() + ")"));
     stepper.measure();
     log_.frame(level, duration_, level == last_level_ ? "final" : "settle", stepper.positions());
     progress.settled = true;

@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 
 #include <plisse/contact/contact.h>
 #include <plisse/contact/friction.h>
@@ -62,6 +64,7 @@ public:
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
     double max_step(const VecX& x, const VecX& d) override;
+    StepLimit step_limit(const VecX& x, const VecX& d) override;
 
     /// Forces without inertia.
     NodalForces forces(const VecX& x);
@@ -85,6 +88,8 @@ private:
     void set_step(const Positions& current, const Positions& anchor, double t, double h);
     void begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first);
     std::vector<Edge> coupled_pairs(const Positions& points);
+    std::string named_corners(int level, std::span<const int> corners) const;
+    std::string in_words(const LimitingPair& pair) const;
 
     const Discretization& discretization_;
     Context& context_;

@@ -1,8 +1,16 @@
 #pragma once
 
+#include <string>
+
 #include <plisse/linalg/newton_system.h>
 
 namespace plisse {
+
+/// What keeps a step short, in words.
+struct StepLimit {
+    std::string cause;  ///< such as "contact"; empty where nothing does
+    std::string detail; ///< what exactly, and where
+};
 
 /// What a solver minimises: a function of 3n unknowns, some of which are prescribed and on their way to given targets.
 /// The solver knows of nothing else. Calls at the same x may share work, so x is passed by value identity.
@@ -24,6 +32,8 @@ public:
     virtual const VecX& targets() const = 0;
     /// Largest alpha in [0, 1] for which the whole way from x to x + alpha d is feasible.
     virtual double max_step(const VecX& x, const VecX& d) = 0;
+    /// What keeps max_step(x, d) below 1. May take as long as that.
+    virtual StepLimit step_limit(const VecX&, const VecX&) { return {}; }
     /// Called with every accepted x.
     virtual void on_accepted(const VecX&) {}
 };
