@@ -13,7 +13,8 @@ function(plisse_folder name)
   set_property(GLOBAL APPEND PROPERTY PLISSE_FOLDERS plisse_${name})
 endfunction()
 
-# plisse_tests(NAME LINKS ...): the test program test_NAME made of tests/NAME.
+# plisse_tests(NAME LINKS ...): the test program test_NAME made of tests/NAME. Suites whose names end in Slow get the
+# label slow.
 function(plisse_tests name)
   cmake_parse_arguments(TESTS "" "" "LINKS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
@@ -22,6 +23,8 @@ function(plisse_tests name)
     target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_compile_definitions(test_${name} PRIVATE PLISSE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     target_link_libraries(test_${name} PRIVATE ${TESTS_LINKS} GTest::gtest_main plisse_compiler)
-    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
+    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Slow.*")
+    gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 TEST_FILTER "*Slow.*" TEST_LIST test_${name}_SLOW
+      PROPERTIES LABELS slow TIMEOUT 7200)
   endif()
 endfunction()

@@ -43,6 +43,7 @@ public:
 private:
     void begin_step(double t, double h, const VecX& anchor);
     void begin_settling_step(double t, double h);
+    bool scripts_have_arrived();
     /// Starts the step where the last step's motion leads, with scripts fulfilled, unless something is in the way or
     /// the script alone leads to a lower value.
     void extrapolate(const VecX& motion);

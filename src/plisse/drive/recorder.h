@@ -58,7 +58,8 @@ struct Reaction {
 struct Lag {
     std::string name;
     int vertices = 0;
-    double distance = 0; ///< m, the largest
+    double distance = 0;                    ///< m, the largest
+    std::vector<std::array<int, 2>> ranges; ///< first and last of each run of such vertices, ascending
 };
 
 enum class RunStatus { running, converged, not_converged, interrupted, failed };

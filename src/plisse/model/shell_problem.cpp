@@ -375,8 +375,8 @@ double ShellProblem::max_step(const VecX& x, const VecX& d) {
     if (carrier_) {
         const Positions& here = carried(x);
         const Positions there = carrier_->prolongation.apply(points + alpha * direction);
-        alpha *=
-            largest_regular_step(discretization_.layout(discretization_.finest()).body_faces, here, there - here).length;
+        alpha *= largest_regular_step(discretization_.layout(discretization_.finest()).body_faces, here, there - here)
+                     .length;
     }
     return alpha;
 }

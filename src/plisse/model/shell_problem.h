@@ -63,6 +63,7 @@ public:
     void assemble(const VecX& x, NewtonSystem& system, bool project) override;
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
+    const std::vector<int>& script_of() const override { return discretization_.layout(level_).script_of; }
     double max_step(const VecX& x, const VecX& d) override;
     StepLimit step_limit(const VecX& x, const VecX& d) override;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <plisse/linalg/newton_system.h>
 
@@ -30,6 +31,11 @@ public:
     virtual NewtonSystem& system() = 0;
     /// Targets of the prescribed unknowns; other entries mean nothing.
     virtual const VecX& targets() const = 0;
+    /// Number of the script that each prescribed unknown follows; empty where all follow one.
+    virtual const std::vector<int>& script_of() const {
+        static const std::vector<int> one;
+        return one;
+    }
     /// Largest alpha in [0, 1] for which the whole way from x to x + alpha d is feasible.
     virtual double max_step(const VecX& x, const VecX& d) = 0;
     /// What keeps max_step(x, d) below 1. May take as long as that.
