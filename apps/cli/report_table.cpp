@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <plisse/base/error.h>
@@ -67,14 +67,26 @@ std::string refinement_rows(const RunReport& report) {
     return text;
 }
 
+std::string ranges_in_words(const Lag& lag) {
+    constexpr std::size_t most = 8;
+    std::vector<std::string> ranges;
+    for (const auto& [first, last] : lag.ranges)
+        ranges.push_back(first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+    if (ranges.size() > most) {
+        ranges.resize(most);
+        ranges.push_back("...");
+    }
+    return fmt::format("{}", fmt::join(ranges, ", "));
+}
+
 std::string script_rows(const RunReport& report) {
     std::string text;
     for (const Reaction& r : report.reactions)
         text += fmt::format("reaction of {}: force ({:.4g}, {:.4g}, {:.4g}) N, torque ({:.4g}, {:.4g}, {:.4g}) N m\n",
                             r.name, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(), r.torque.z());
     for (const Lag& lag : report.lagging)
-        text += fmt::format("{} is short of its target: {} vertices, at most {} mm\n", lag.name, lag.vertices,
-                            millimetres(lag.distance));
+        text += fmt::format("{} is short of its target by up to {} mm: {} vertices, {}\n", lag.name,
+                            millimetres(lag.distance), lag.vertices, ranges_in_words(lag));
     return text.empty() ? text : "\n" + text;
 }
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
-#include <plisse/contact/barrier.h>
 #include <plisse/contact/candidates.h>
 #include <plisse/contact/contact.h>
+#include <plisse/geometry/barrier.h>
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>

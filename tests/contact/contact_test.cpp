@@ -279,6 +279,27 @@ TEST(Contact, LongFallsInPiecesAreCheckedAllTheWay) {
     EXPECT_LE(candidates.size(ee), 100 * scene.x.cols());
 }
 
+TEST(Contact, NamesThePairThatLimitsAStep) {
+    Scene scene;
+    scene.append_sheet(4, [](double u, double v) { return Vec3(u, 0, v); });
+    scene.append_sheet(
+        1, [](double u, double v) { return Vec3(20 * u - 7, -1, 20 * v - 5); }, true);
+    ContactOptions options;
+    Contact contact(scene.mesh(), options);
+    Positions d = Positions::Zero(3, scene.x.cols());
+    d.col(7) = Vec3(0, -2, 0);
+    const auto pair = contact.limiting_pair(scene.x, d);
+    ASSERT_TRUE(pair.has_value());
+    EXPECT_EQ(pair->kind, pt);
+    EXPECT_EQ(pair->primitives[0], 7);
+    EXPECT_GE(pair->primitives[1], 32); // of the plane
+    EXPECT_EQ(pair->step, contact.max_step(scene.x, d));
+    EXPECT_LT(pair->step, 0.5);
+    EXPECT_NEAR(pair->gap, 1, 1e-12);
+    EXPECT_LT((pair->place - (scene.x.col(7) - Vec3(0, 0.5, 0))).norm(), 1e-12);
+    EXPECT_FALSE(contact.limiting_pair(scene.x, 0.1 * d).has_value());
+}
+
 TEST(Contact, FollowsThePointsThroughManySteps) {
     // Candidates found earlier are reused: a long walk must stay free of intersections with one object for all steps.
     constexpr double gap = 0.05;
@@ -309,7 +330,7 @@ TEST(Contact, ResultsDoNotDependOnThreads) {
         rest.row(1) *= 10;
         Contact contact(scene.mesh(rest), options);
         return std::tuple(contact.value(x), gradient_of(contact, x), system_of(contact, x).blocks(),
-                          contact.max_step(x, d), contact.coupled_pairs(x));
+                          contact.max_step(x, d), contact.limiting_pair(x, d)->primitives, contact.coupled_pairs(x));
     };
     const auto one = run(1), two = run(2);
     EXPECT_GT(std::get<0>(one), 0);

@@ -1,45 +1,17 @@
 #include <gtest/gtest.h>
 
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/intersections.h>
-
 #include <map>
 #include <optional>
 
 #include <plisse/base/parallel.h>
 #include <plisse/drive/run.h>
 
+#include "exact_intersections.h"
 #include "small_models.h"
 
 using namespace plisse;
 
 namespace {
-
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-
-/// Intersecting pairs by exact constructions, sharing no code with the solver: what two triangles have in common must
-/// be nothing, or just their shared corner or edge.
-int count_intersections(const Positions& x, const std::vector<Face>& faces, int body_vertices) {
-    const auto point = [&](int v) { return Kernel::Point_3(x(0, v), x(1, v), x(2, v)); };
-    const auto triangle = [&](const Face& f) { return Kernel::Triangle_3(point(f[0]), point(f[1]), point(f[2])); };
-    int count = 0;
-    for (std::size_t a = 0; a < faces.size(); ++a)
-        for (std::size_t b = a + 1; b < faces.size(); ++b) {
-            if (faces[a][0] >= body_vertices && faces[b][0] >= body_vertices)
-                continue;
-            const Kernel::Triangle_3 ta = triangle(faces[a]), tb = triangle(faces[b]);
-            if (!CGAL::do_overlap(ta.bbox(), tb.bbox()) || !CGAL::do_intersect(ta, tb))
-                continue;
-            int shared = 0;
-            for (int v : faces[a])
-                shared += std::find(faces[b].begin(), faces[b].end(), v) != faces[b].end();
-            const auto common = CGAL::intersection(ta, tb);
-            const bool harmless = (shared == 1 && boost::get<Kernel::Point_3>(&*common)) ||
-                                  (shared == 2 && boost::get<Kernel::Segment_3>(&*common));
-            count += !harmless;
-        }
-    return count;
-}
 
 /// Keeps what a run says; can cancel it after some checkpoints.
 struct Witness : Recorder {
@@ -48,30 +20,12 @@ struct Witness : Recorder {
     void on_hierarchy(const Hierarchy& h) override { hierarchy = h; }
     void on_frame(const Frame& frame) override {
         const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(frame.level)];
-        intersections += count_level_intersections(*frame.positions, level);
+        intersections += count_intersections(*frame.positions, level, 1);
     }
     void on_checkpoint(const Checkpoint& checkpoint) override {
         last = checkpoint;
         if (context && --left == 0)
             context->cancel();
-    }
-    static int count_level_intersections(const Positions& x, const HierarchyLevel& level) {
-        // Bodies first, so that the brute force can tell obstacles by their number.
-        std::vector<int> order(level.part.size());
-        int next = 0;
-        for (int pass = 0; pass < 2; ++pass)
-            for (std::size_t v = 0; v < order.size(); ++v)
-                if ((level.part[v] > 0) == (pass == 1))
-                    order[v] = next++;
-        const int bodies = static_cast<int>(std::count(level.part.begin(), level.part.end(), 0));
-        Positions y(3, x.cols());
-        for (std::size_t v = 0; v < order.size(); ++v)
-            y.col(order[v]) = x.col(static_cast<int>(v));
-        std::vector<Face> faces;
-        for (const Face& f : level.faces)
-            faces.push_back({order[static_cast<std::size_t>(f[0])], order[static_cast<std::size_t>(f[1])],
-                             order[static_cast<std::size_t>(f[2])]});
-        return count_intersections(y, faces, bodies);
     }
 
     Context* context;

@@ -140,4 +140,43 @@ TEST(ShellProblem, SharesTheMassOutOverEveryLevel) {
     }
 }
 
+TEST(ShellProblem, SaysWhatLimitsAStep) {
+    Context context;
+    const Model model = loaded_model(BendingOn::finest, ProlongationOperator::shell);
+    const Discretization discretization(model, 3, context);
+    for (int level : {0, 2}) {
+        ShellProblem problem(discretization, level, EnergiesOf::finest, context);
+        const Positions start = discretization.start(level);
+        problem.begin_step(start, start, 0, 0.1);
+        VecX fall = VecX::Zero(start.size());
+        for (int v = 0; v < start.cols(); ++v)
+            if (discretization.mesh(level).part[static_cast<std::size_t>(v)] == 0)
+                fall[3 * v + 1] = -0.05;
+        EXPECT_LT(problem.max_step(as_vector(start), fall), 1);
+        const StepLimit limit = problem.step_limit(as_vector(start), fall);
+        EXPECT_EQ(limit.cause, "contact");
+        for (const char* part : {" of body", " of ball", " m apart at ("})
+            EXPECT_NE(limit.detail.find(part), std::string::npos) << limit.detail;
+        EXPECT_EQ(problem.step_limit(as_vector(start), 1e-3 * fall).cause, "");
+    }
+}
+
+TEST(ShellProblem, SaysWhichTriangleWouldCollapse) {
+    Model model = empty_model("sheet");
+    add_body(model, "sheet", {}, sheet_mesh(0.1, 0.03));
+    model.contact.self = false;
+    Context context;
+    const Discretization discretization(model, 1, context);
+    ShellProblem problem(discretization, 0, EnergiesOf::level, context);
+    const Positions start = discretization.start(0);
+    problem.begin_step(start, start, 0, 0.1);
+    const Face face = discretization.mesh(0).faces[5];
+    VecX flattening = VecX::Zero(start.size());
+    flattening.segment<3>(3 * face[0]) = 0.5 * (start.col(face[1]) + start.col(face[2])) - start.col(face[0]);
+    EXPECT_LT(problem.max_step(as_vector(start), flattening), 0.91);
+    const StepLimit limit = problem.step_limit(as_vector(start), flattening);
+    EXPECT_EQ(limit.cause, "triangle");
+    EXPECT_NE(limit.detail.find(" of sheet would collapse"), std::string::npos) << limit.detail;
+}
+
 } // namespace

@@ -46,7 +46,7 @@ RunReport sample_report() {
     refinement.min_gap = 1e-4 / 3;
     report.refinements = {refinement};
     report.reactions = {{"left", Vec3(0, 1.0 / 7, 0), Vec3::Ones()}, {"ball", Vec3::Zero(), Vec3::Zero()}};
-    report.lagging = {{"left", 3, 0.1}};
+    report.lagging = {{"left", 3, 0.1, {{0, 1}, {7, 7}}}};
     return report;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <plisse/solve/newton.h>
 
@@ -31,7 +33,14 @@ public:
     }
     /// Makes the Hessian this many times stiffer than it is.
     void exaggerate(double factor) { exaggeration_ = factor; }
+    void open_wall_after(int steps) { steps_to_opening_ = steps; }
     int assemblies() const { return assemblies_; }
+    /// Where the first vertex goes, and the number of its script; the last one's is 0.
+    void set_first_target(const Vec3& start, int script) {
+        targets_.head<3>() = start;
+        script_of_.assign(static_cast<std::size_t>(3 * n_), 0);
+        std::fill_n(script_of_.begin(), 3, script);
+    }
     void set_target(const Vec3& end) { targets_.tail<3>() = end; }
 
     double value(const VecX& x) override {
@@ -69,6 +78,7 @@ public:
     }
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
+    const std::vector<int>& script_of() const override { return script_of_; }
     double max_step(const VecX& x, const VecX& d) override {
         double alpha = 1;
         for (int v = 0; v < n_; ++v)
@@ -76,17 +86,26 @@ public:
                 alpha = std::min(alpha, 0.9 * (wall_ - x[3 * v]) / d[3 * v]);
         return alpha;
     }
+    StepLimit step_limit(const VecX& x, const VecX& d) override {
+        for (int v = 0; v < n_; ++v)
+            if (x[3 * v] + d[3 * v] > wall_)
+                return {"wall", "vertex " + std::to_string(v)};
+        return {};
+    }
     void on_accepted(const VecX& x) override {
         for (int v = 0; v < n_; ++v)
             EXPECT_LE(x[3 * v], wall_);
+        if (--steps_to_opening_ == 0)
+            wall_ = std::numeric_limits<double>::infinity();
     }
 
 private:
     int n_;
     double wall_;
     double exaggeration_ = 1;
-    int assemblies_ = 0;
+    int assemblies_ = 0, steps_to_opening_ = 0;
     VecX targets_;
+    std::vector<int> script_of_;
     NewtonSystem system_;
 };
 
@@ -150,17 +169,56 @@ TEST(Newton, TakesNoStepAtRest) {
     EXPECT_EQ(x, chain.rest());
 }
 
-TEST(Newton, SaysThatItStallsWhereTheScriptIsBlocked) {
+TEST(Newton, SaysThatTheScriptIsBlockedAndByWhat) {
     SpringChain chain(4, 3.5);
     chain.set_target(Vec3(5, 0, 0));
     VecX x = chain.rest();
     SparseCholesky cholesky;
     Context context;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
-    EXPECT_EQ(summary.end, NewtonEnd::stalled);
+    NewtonOptions options;
+    options.tolerance = 1e-6;
+    std::vector<std::string> causes;
+    const NewtonSummary summary = minimize(chain, cholesky, x, options, context, [&](const NewtonIteration& iteration) {
+        if (!iteration.limit.cause.empty())
+            causes.push_back(iteration.limit.cause);
+    });
+    EXPECT_EQ(summary.end, NewtonEnd::blocked);
     EXPECT_GT(summary.remaining, 1.4);
+    EXPECT_LT(summary.iterations, 60);
     EXPECT_LE(x[9], 3.5);
-    EXPECT_FALSE(summary.message.empty());
+    EXPECT_GT(x[9], 3.3);
+    for (int v = 1; v < 3; ++v) // the free ones share what has been reached
+        EXPECT_NEAR(x[3 * v], v * x[9] / 3, 1e-5);
+    EXPECT_NE(summary.message.find("wall: vertex 3"), std::string::npos) << summary.message;
+    ASSERT_FALSE(causes.empty());
+    EXPECT_LE(causes.size(), 3U); // not once an iteration
+    EXPECT_EQ(causes.front(), "wall");
+}
+
+TEST(Newton, LetsAScriptArriveThatIsNotInTheWay) {
+    SpringChain chain(4, 3.5);
+    chain.set_target(Vec3(5, 0, 0));
+    chain.set_first_target(Vec3(-1, 0, 0), 1);
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    EXPECT_EQ(summary.end, NewtonEnd::blocked) << summary.message;
+    EXPECT_EQ(x[0], -1);
+    EXPECT_LE(x[9], 3.5);
+    EXPECT_LT(summary.iterations, 80);
+}
+
+TEST(Newton, GoesOnWithAScriptThatWasHeldUp) {
+    SpringChain chain(4, 3.5);
+    chain.open_wall_after(12);
+    chain.set_target(Vec3(5, 0, 0));
+    VecX x = chain.rest();
+    SparseCholesky cholesky;
+    Context context;
+    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
+    EXPECT_EQ(x[9], 5);
 }
 
 TEST(Newton, NeverCallsACapConverged) {

@@ -37,6 +37,7 @@ struct Contact::State {
     /// sweep_start along d, whose boxes reach to sweep_end.
     double safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const;
     double safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d, double length) const;
+    LimitingPair limiting_pair(StencilKind kind, int candidate, const Positions& x, double step) const;
     /// Adds block by block what pairs[begin ...] contribute, the results being in `hessians`.
     void scatter_hessians(std::size_t begin, std::size_t count, NewtonSystem& system) const;
 
@@ -46,6 +47,7 @@ struct Contact::State {
     ActiveSet active;
     Positions active_at{3, 0}; ///< where the active set was found
     Positions sweep_start, sweep_end;
+    double sweep_length = 1; ///< from sweep_start to sweep_end, as a share of the motion
     bool sweeps_begin_at_x = true;
     Candidates::Drift sweep_drift;
     std::vector<Vec12> gradients;
@@ -213,13 +215,40 @@ double Contact::max_step(const Positions& x, const Positions& d) {
             s.sweep_end = x + until * d;
         }
         s.candidates.find_drift(s.sweep_start, s.sweep_end, s.sweep_drift);
-        double length = s.safe_length(StencilKind::point_triangle, x, d, until - done);
+        s.sweep_length = until - done;
+        double length = s.safe_length(StencilKind::point_triangle, x, d, s.sweep_length);
         length = s.safe_length(StencilKind::edge_edge, x, d, length);
-        if (length < until - done)
+        if (length < s.sweep_length)
             return done + length;
         done = until;
     }
     return 1;
+}
+
+LimitingPair Contact::State::limiting_pair(StencilKind kind, int candidate, const Positions& x, double step) const {
+    const Stencil stencil = gather(x, candidates.vertices(kind, candidate));
+    const Separation separation = separate(kind, stencil);
+    Vec3 place = Vec3::Zero(); // the weights are those of the difference: of either sign, and 1 in all on each side
+    for (int i = 0; i < 4; ++i)
+        place += 0.5 * std::abs(separation.weights[i]) * stencil.col(i);
+    return {kind, candidates.primitives(kind, candidate), step, separation.offset.norm(), place};
+}
+
+std::optional<LimitingPair> Contact::limiting_pair(const Positions& x, const Positions& d) {
+    const double step = max_step(x, d);
+    if (step == 1)
+        return std::nullopt;
+    // Sweep and candidates are now those of the part of the way on which the step ends.
+    const State& s = *state_;
+    double least = s.sweep_length;
+    std::pair limiting{StencilKind::point_triangle, 0};
+    for (const StencilKind kind : {StencilKind::point_triangle, StencilKind::edge_edge})
+        for (int i = 0; i < s.candidates.size(kind); ++i)
+            if (const double length = s.safe_length_of(kind, i, x, d, s.sweep_length); length < least) {
+                least = length;
+                limiting = {kind, i};
+            }
+    return s.limiting_pair(limiting.first, limiting.second, x, step);
 }
 
 double Contact::min_gap(const Positions& x) {

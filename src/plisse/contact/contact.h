@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <plisse/base/context.h>
 #include <plisse/contact/collision_mesh.h>
@@ -18,6 +19,15 @@ struct ActivePair {
     std::array<int, 4> vertices;
     PairParameters parameters;
     Separation separation;
+};
+
+/// A pair of primitives that no longer step may bring nearer to each other.
+struct LimitingPair {
+    StencilKind kind;
+    std::array<int, 2> primitives; ///< vertex and face, or edge and edge
+    double step;                   ///< what max_step returns
+    double gap;                    ///< m, where the step begins
+    Vec3 place;                    ///< m: midway between the two, where the step begins
 };
 
 /// Barrier contact of one collision mesh (C-IPC, Li et al. 2021): energy, derivatives, and the largest step that keeps
@@ -48,6 +58,9 @@ public:
     /// distance and the lesser of options.ccd_ratio of what it has beyond that at x and of the contact distance, at
     /// every moment of the motion. Never an overestimate.
     double max_step(const Positions& x, const Positions& d);
+
+    /// The pair that keeps max_step(x, d) below 1, the first if there are several.
+    std::optional<LimitingPair> limiting_pair(const Positions& x, const Positions& d);
 
     /// Smallest gap, m, that is distance less thickness, over pairs of different parts and those of one part that are
     /// not near at rest, looked for within the contact distance only; infinity when there is none.

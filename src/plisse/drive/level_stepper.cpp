@@ -24,6 +24,7 @@ LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     case NewtonEnd::iteration_cap:
         return LevelStepper::Outcome::cut_short;
     case NewtonEnd::stalled:
+    case NewtonEnd::blocked:
         return LevelStepper::Outcome::stalled;
     case NewtonEnd::cancelled:
         break;
@@ -71,6 +72,14 @@ void LevelStepper::begin_settling_step(double t, double h) {
     problem_.begin_settling_step(as_positions(x_), t, h, progress_.friction);
 }
 
+bool LevelStepper::scripts_have_arrived() {
+    const auto& prescribed = problem_.system().prescribed();
+    for (Eigen::Index i = 0; i < x_.size(); ++i)
+        if (prescribed[static_cast<std::size_t>(i)] && x_[i] != problem_.targets()[i])
+            return false;
+    return true;
+}
+
 void LevelStepper::extrapolate(const VecX& motion) {
     const auto& prescribed = problem_.system().prescribed();
     VecX by_script = x_;
@@ -102,11 +111,13 @@ NewtonSummary LevelStepper::solve_step(double t, double tolerance, const char* p
             shown.gap = problem_.min_gap(x_);
             log_.context().on_progress(shown);
             log_.iteration({level_, shown.step, iteration.iteration, t, iteration.value, shown.step_norm, shown.gap,
-                            log_.seconds(), iteration.step_length});
+                            log_.seconds(), iteration.step_length, iteration.limit});
         });
     report.newton_iterations += summary.iterations;
-    if (summary.end == NewtonEnd::stalled)
-        log_.context().on_message(fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message));
+    if (summary.end != NewtonEnd::converged)
+        trouble_ = fmt::format("level {}, t = {:.4g} s: {}", level_, t, summary.message);
+    if (summary.end == NewtonEnd::stalled || summary.end == NewtonEnd::blocked)
+        log_.context().on_message(trouble_);
     return summary;
 }
 
@@ -120,6 +131,8 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
         gripped = false;
         if (update == most_friction_updates || whole.iterations == most_iterations) {
             whole.end = NewtonEnd::iteration_cap;
+            trouble_ = fmt::format("level {}, t = {:.4g} s: the forces of friction have not come to rest in {} updates",
+                                   level_, t, update);
             break;
         }
         part = solve_step(t, tolerance, phase, most_iterations - whole.iterations);
@@ -215,14 +228,18 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
     while (progress_.settle_step < settings_.max_settle_steps) {
         const VecX before = x_;
         const double h = progress_.settle_time_step;
-        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short.
-        const int most = std::min(iteration_cap(), preview_iteration_cap);
         begin_settling_step(t, h);
+        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short. Only
+        // scripts that have yet to arrive may not wait.
+        const int most = scripts_have_arrived() ? std::min(iteration_cap(), preview_iteration_cap)
+                                                : settings_.max_iterations_per_step.value_or(final_iteration_cap);
         const NewtonSummary summary = solve_rubbing_step(t, progress_.settle_tolerance, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
         }
+        if (summary.end == NewtonEnd::blocked)
+            return Outcome::stalled;
         ++progress_.settle_step;
         if (summary.end == NewtonEnd::converged) { // else contacts may be on a way that they have yet to take back
             problem_.remember_friction(x_);

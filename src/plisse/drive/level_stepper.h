@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <plisse/drive/run_log.h>
@@ -35,6 +36,9 @@ public:
     /// One step at time t, as a level gets that is not to settle.
     Outcome step_once(double t);
 
+    /// Why the last step that was cut short or stalled was so, in words; empty where none was.
+    const std::string& trouble() const { return trouble_; }
+
     /// Brings the level's part of the report up to date.
     void measure();
 
@@ -44,6 +48,7 @@ public:
 private:
     void begin_step(double t, double h, const VecX& anchor);
     void begin_settling_step(double t, double h);
+    bool scripts_have_arrived();
     /// Starts the step where the last step's motion leads, with scripts fulfilled, unless something is in the way or
     /// the script alone leads to a lower value.
     void extrapolate(const VecX& motion);
@@ -63,6 +68,7 @@ private:
     SparseCholesky cholesky_;
     VecX x_;
     Checkpoint progress_;
+    std::string trouble_;
     PhaseTimes times_at_start_;
     Stopwatch watch_;
 };

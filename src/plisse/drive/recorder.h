@@ -7,6 +7,7 @@
 #include <plisse/base/context.h>
 #include <plisse/contact/friction.h>
 #include <plisse/decimate/hierarchy.h>
+#include <plisse/solve/objective.h>
 
 namespace plisse {
 
@@ -23,6 +24,7 @@ struct Frame {
 struct IterationRecord {
     int level = 0, step = 0, iteration = 0;
     double t = 0, energy = 0, step_norm = 0, gap = 0, seconds = 0, step_length = 0;
+    StepLimit limit; ///< what has been cutting steps short; empty where it is not news
 };
 
 struct EnergyParts {
@@ -58,7 +60,8 @@ struct Reaction {
 struct Lag {
     std::string name;
     int vertices = 0;
-    double distance = 0; ///< m, the largest
+    double distance = 0;                    ///< m, the largest
+    std::vector<std::array<int, 2>> ranges; ///< first and last of each run of such vertices, ascending
 };
 
 enum class RunStatus { running, converged, not_converged, interrupted, failed };

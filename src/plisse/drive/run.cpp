@@ -154,8 +154,9 @@ bool Driver::run_level(LevelStepper& stepper) {
         if (outcome == Outcome::cancelled)
             return false;
         if (outcome != Outcome::done && level == last_level_)
-            fail(RunStatus::not_converged, outcome == Outcome::stalled ? "a step of the timeline stalled"
-                                                                       : "a step of the timeline was cut short");
+            fail(RunStatus::not_converged,
+                 fmt::format("a step of the timeline {} ({})",
+                             outcome == Outcome::stalled ? "stalled" : "was cut short", stepper.trouble()));
     }
     const Outcome outcome = model_.solve.settle     ? stepper.settle(duration_)
                             : level == first_level_ ? Outcome::done
@@ -163,7 +164,8 @@ bool Driver::run_level(LevelStepper& stepper) {
     if (outcome == Outcome::cancelled)
         return false;
     if (outcome != Outcome::done && (model_.solve.settle || level == last_level_))
-        fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium", level));
+        fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium{}", level,
+                                                   stepper.trouble().empty() ? "" : " (" + stepper.trouble() + ")"));
     stepper.measure();
     log_.frame(level, duration_, level == last_level_ ? "final" : "settle", stepper.positions());
     progress.settled = true;
@@ -245,8 +247,12 @@ void Driver::find_lagging(LevelStepper& stepper) {
         if (away.norm() <= allowed)
             continue;
         const auto count = [&](std::size_t script_number) {
-            ++lags[script_number].vertices;
-            lags[script_number].distance = std::max(lags[script_number].distance, away.norm());
+            Lag& lag = lags[script_number];
+            ++lag.vertices;
+            lag.distance = std::max(lag.distance, away.norm());
+            if (lag.ranges.empty() || lag.ranges.back()[1] != v - 1)
+                lag.ranges.push_back({v, v});
+            lag.ranges.back()[1] = v;
         };
         for (int h : discretization_.handles_of(level, v))
             count(at(h));

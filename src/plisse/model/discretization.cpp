@@ -110,10 +110,16 @@ void Discretization::lay_out(int level) {
                 {fine.part[at(v)], fine.label[at(v)], fine.rest(0, v), fine.rest(1, v), fine.rest(2, v)}, v);
     layout.source.assign(vertices, -1);
     layout.prescribed.assign(3 * vertices, 0);
+    layout.script_of.assign(3 * vertices, 0);
+    const int first_obstacle = static_cast<int>(model_.bodies.size());
+    const int first_obstacle_script = static_cast<int>(model_.handles.size());
     for (std::size_t v = 0; v < vertices; ++v) {
         const int column = static_cast<int>(v);
         if (!used[v] || model_.is_obstacle(mesh_of_level.part[v]))
             std::fill_n(layout.prescribed.begin() + 3 * column, 3, std::uint8_t{1});
+        if (model_.is_obstacle(mesh_of_level.part[v]))
+            std::fill_n(layout.script_of.begin() + 3 * column, 3,
+                        first_obstacle_script + mesh_of_level.part[v] - first_obstacle);
         if (mesh_of_level.label[v] < 0)
             continue;
         const auto& p = mesh_of_level.rest;
@@ -121,7 +127,10 @@ void Discretization::lay_out(int level) {
             finest_at.at({mesh_of_level.part[v], mesh_of_level.label[v], p(0, column), p(1, column), p(2, column)});
         for (int h : handles_of(level, column))
             for (std::size_t axis = 0; axis < 3; ++axis)
-                layout.prescribed[3 * v + axis] |= model_.handles[at(h)].axes[axis];
+                if (model_.handles[at(h)].axes[axis]) {
+                    layout.prescribed[3 * v + axis] = 1;
+                    layout.script_of[3 * v + axis] = h;
+                }
     }
 }
 

@@ -16,6 +16,7 @@ struct LevelLayout {
     std::vector<int> body_face_part; ///< per body face
     std::vector<int> source;         ///< per vertex: the finest vertex it coincides with at rest, when pinned; else -1
     std::vector<std::uint8_t> prescribed; ///< per unknown (3 per vertex)
+    std::vector<int> script_of; ///< per unknown: the handle, or obstacle after the handles, that prescribes it
 };
 
 /// A model on its hierarchy: levels, scripts and start states. Level 0 is the coarsest.

@@ -30,4 +30,9 @@ std::vector<int> Model::face_parts() const {
     return numbered_parts(*this, mesh.face_count(), [](const auto& part) { return part.faces; });
 }
 
+const std::string& Model::part_name(int part) const {
+    const std::size_t number = static_cast<std::size_t>(part);
+    return is_obstacle(part) ? obstacles[number - bodies.size()].name : bodies[number].name;
+}
+
 } // namespace plisse

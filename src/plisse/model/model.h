@@ -121,6 +121,7 @@ struct Model {
     /// Number of the body or obstacle (after the bodies) of each vertex.
     std::vector<int> vertex_parts() const;
     std::vector<int> face_parts() const;
+    const std::string& part_name(int part) const;
     int part_count() const { return static_cast<int>(bodies.size() + obstacles.size()); }
     bool is_obstacle(int part) const { return part >= static_cast<int>(bodies.size()); }
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <plisse/base/parallel.h>
 #include <plisse/geometry/triangle_motion.h>
 #include <plisse/spatial/box.h>
@@ -20,22 +22,29 @@ std::size_t at(int index) {
 constexpr int chunk_size = 512;
 constexpr double first_grip = 10; // of contacts whose normal forces are not known yet
 
-/// Largest fraction of the motion over which no triangle comes near collapsing.
-double largest_regular_step(const std::vector<Face>& faces, const Positions& x, const Positions& d) {
-    std::vector<double> limits(at(chunk_count(static_cast<int>(faces.size()), chunk_size)), 1.0);
+/// Largest fraction of the motion over which no triangle comes near collapsing, and the first that would.
+struct RegularStep {
+    double length = 1;
+    int face = -1;
+};
+
+RegularStep largest_regular_step(const std::vector<Face>& faces, const Positions& x, const Positions& d) {
+    std::vector<RegularStep> limits(at(chunk_count(static_cast<int>(faces.size()), chunk_size)));
     parallel_chunks(static_cast<int>(faces.size()), chunk_size, [&](int chunk, int begin, int end) {
-        double limit = 1;
+        RegularStep limit;
         for (int f = begin; f < end; ++f) {
             const Face& face = faces[at(f)];
             const Vec3 e1 = x.col(face[1]) - x.col(face[0]);
             const Vec3 e2 = x.col(face[2]) - x.col(face[0]);
             const Vec3 d1 = d.col(face[1]) - d.col(face[0]);
             const Vec3 d2 = d.col(face[2]) - d.col(face[0]);
-            limit = std::min(limit, regular_step(e1, e2, d1, d2));
+            if (const double length = regular_step(e1, e2, d1, d2); length < limit.length)
+                limit = {length, f};
         }
         limits[at(chunk)] = limit;
     });
-    return limits.empty() ? 1.0 : *std::min_element(limits.begin(), limits.end());
+    const auto shorter = [](const RegularStep& a, const RegularStep& b) { return a.length < b.length; };
+    return limits.empty() ? RegularStep{} : *std::min_element(limits.begin(), limits.end(), shorter);
 }
 
 /// Barrier pressure scale: the pressure that a membrane of strain 0.1 exerts over a radius of 1/300 of the body, at
@@ -61,6 +70,10 @@ std::vector<double> friction_coefficients(const Model& model) {
     for (const ContactSettings::Pair& pair : model.contact.pairs)
         coefficients[at(pair.a) * parts + at(pair.b)] = coefficients[at(pair.b) * parts + at(pair.a)] = pair.friction;
     return coefficients;
+}
+
+std::string place_in_words(const Vec3& place) {
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", place.x(), place.y(), place.z());
 }
 
 double largest_norm(const Positions& forces) {
@@ -384,14 +397,59 @@ double ShellProblem::max_step(const VecX& x, const VecX& d) {
     double alpha = contact_->max_step(points, direction);
     PhaseScope scope(context_.times, Phase::ccd);
     alpha *= strain_limit_.max_step(points, alpha * direction);
-    alpha = std::min(alpha, largest_regular_step(discretization_.layout(level_).body_faces, points, alpha * direction) *
-                                alpha);
+    alpha *= largest_regular_step(discretization_.layout(level_).body_faces, points, alpha * direction).length;
     if (carrier_) {
         const Positions& here = carried(x);
         const Positions there = carrier_->prolongation.apply(points + alpha * direction);
-        alpha *= largest_regular_step(discretization_.layout(discretization_.finest()).body_faces, here, there - here);
+        alpha *= largest_regular_step(discretization_.layout(discretization_.finest()).body_faces, here, there - here)
+                     .length;
     }
     return alpha;
+}
+
+StepLimit ShellProblem::step_limit(const VecX& x, const VecX& d) {
+    const Positions points = level_positions(x);
+    const auto pair = contact_->limiting_pair(points, as_positions(d));
+    const Positions until_contact = (pair ? pair->step : 1.0) * as_positions(d);
+    const double within_limit = strain_limit_.max_step(points, until_contact);
+    const Positions motion = within_limit * until_contact;
+    const auto collapsing = [&](int level, const Positions& here, const Positions& there) -> StepLimit {
+        const auto& faces = discretization_.layout(level).body_faces;
+        const int face = largest_regular_step(faces, here, there - here).face;
+        if (face < 0)
+            return {};
+        return {"triangle", fmt::format("{} would collapse at {}", named_corners(level, faces[at(face)]),
+                                        place_in_words(here.col(faces[at(face)][0])))};
+    };
+    StepLimit limit = collapsing(level_, points, points + motion);
+    if (limit.cause.empty() && carrier_)
+        limit = collapsing(discretization_.finest(), carried(x), carrier_->prolongation.apply(points + motion));
+    if (limit.cause.empty() && within_limit < 1) {
+        const StrainLimit::Excess worst = strain_limit_.excess(points + motion, 1);
+        limit = {"strain limit", fmt::format("a face of {} is stretched to {:.6g} of {:.6g} at {}",
+                                             discretization_.model().part_name(worst.body), worst.stretch, worst.limit,
+                                             place_in_words(worst.place))};
+    }
+    if (limit.cause.empty() && pair)
+        limit = {"contact", in_words(*pair)};
+    return limit;
+}
+
+/// Corners (of a face, of an edge, or one alone) by their numbers on a level, with the name of their body or obstacle.
+std::string ShellProblem::named_corners(int level, std::span<const int> corners) const {
+    constexpr std::array kinds = {"vertex", "edge", "triangle"};
+    return fmt::format("{} {} of {}", kinds[corners.size() - 1], fmt::join(corners, "-"),
+                       discretization_.model().part_name(discretization_.mesh(level).part[at(corners[0])]));
+}
+
+std::string ShellProblem::in_words(const LimitingPair& pair) const {
+    const CollisionMesh& mesh = contact_->mesh();
+    const auto [first, second] = pair.primitives;
+    const bool edges = pair.kind == StencilKind::edge_edge;
+    const std::span<const int> one = edges ? std::span<const int>(mesh.edges[at(first)]) : std::span(&first, 1);
+    const std::span<const int> other = edges ? std::span<const int>(mesh.edges[at(second)]) : mesh.faces[at(second)];
+    return fmt::format("{} and {} are {:.3g} m apart at {}", named_corners(level_, one), named_corners(level_, other),
+                       pair.gap, place_in_words(pair.place));
 }
 
 double ShellProblem::residual(const VecX& x) {

@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 
 #include <plisse/contact/contact.h>
 #include <plisse/contact/friction.h>
@@ -67,7 +69,9 @@ public:
     void assemble(const VecX& x, NewtonSystem& system, bool project) override;
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return targets_; }
+    const std::vector<int>& script_of() const override { return discretization_.layout(level_).script_of; }
     double max_step(const VecX& x, const VecX& d) override;
+    StepLimit step_limit(const VecX& x, const VecX& d) override;
 
     /// Forces without inertia.
     NodalForces forces(const VecX& x);
@@ -95,6 +99,8 @@ private:
     void set_step(const Positions& current, const Positions& anchor, double t, double h);
     void begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first);
     std::vector<Edge> coupled_pairs(const Positions& points);
+    std::string named_corners(int level, std::span<const int> corners) const;
+    std::string in_words(const LimitingPair& pair) const;
 
     const Discretization& discretization_;
     Context& context_;

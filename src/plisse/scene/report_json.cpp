@@ -156,7 +156,10 @@ Json report_to_json(const RunReport& report, const ProcessFacts& process) {
         json["reactions"][reaction.name] = {{"force", vector_json(reaction.force)},
                                             {"torque", vector_json(reaction.torque)}};
     for (const Lag& lag : report.lagging)
-        json["lagging"].push_back({{"name", lag.name}, {"vertices", lag.vertices}, {"distance", lag.distance}});
+        json["lagging"].push_back({{"name", lag.name},
+                                   {"vertices", lag.vertices},
+                                   {"distance", lag.distance},
+                                   {"vertex_ranges", lag.ranges}});
     return json;
 }
 
@@ -175,8 +178,9 @@ RunReport report_from_json(const Json& json) {
     for (const auto& [name, reaction] : json.at("reactions").items())
         report.reactions.push_back({name, vector_from(reaction.at("force")), vector_from(reaction.at("torque"))});
     for (const Json& lag : json.at("lagging"))
-        report.lagging.push_back(
-            {lag.at("name").get<std::string>(), lag.at("vertices").get<int>(), number_or_infinity(lag.at("distance"))});
+        report.lagging.push_back({lag.at("name").get<std::string>(), lag.at("vertices").get<int>(),
+                                  number_or_infinity(lag.at("distance")),
+                                  lag.value("vertex_ranges", std::vector<std::array<int, 2>>())});
     return report;
 }
 

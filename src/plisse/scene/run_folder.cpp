@@ -117,7 +117,7 @@ void RunFolder::on_hierarchy(const Hierarchy& hierarchy) {
 }
 
 void RunFolder::on_iteration(const IterationRecord& record) {
-    log_.append({{"level", record.level},
+    Json line = {{"level", record.level},
                  {"step", record.step},
                  {"iteration", record.iteration},
                  {"t", record.t},
@@ -125,7 +125,10 @@ void RunFolder::on_iteration(const IterationRecord& record) {
                  {"step_norm", record.step_norm},
                  {"step_length", record.step_length},
                  {"gap", record.gap},
-                 {"seconds", record.seconds}});
+                 {"seconds", record.seconds}};
+    if (!record.limit.cause.empty())
+        line["cut_by"] = {{"cause", record.limit.cause}, {"detail", record.limit.detail}};
+    log_.append(line);
 }
 
 void RunFolder::on_frame(const Frame& frame) {

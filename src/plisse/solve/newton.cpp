@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include <plisse/solve/script_drive.h>
 
 namespace plisse {
 
@@ -18,22 +21,8 @@ struct Direction {
     int worst_vertex = -1;
 };
 
-/// The exact penalty of prescribed unknowns on their way: weight * share, where share is 1 at the start of the solve
-/// and shrinks by (1 - alpha) with each step.
-struct Penalty {
-    double share = 1;
-    double weight = 0;
-
-    double value() const { return weight * share; }
-    /// Makes the quadratic model of the merit decrease along the whole step.
-    void raise_for(const Direction& direction) {
-        if (share > 0)
-            weight = std::max(weight, 2 * (direction.slope + std::max(direction.curvature, 0.0)) / share);
-    }
-};
-
-/// Factorises, shifting the diagonal where round-off has made H indefinite.
-void factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
+/// Factorises, shifting the diagonal where round-off has made H indefinite. Returns the shift.
+double factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
     double shift = 0;
     while (!cholesky.factorize(system, shift)) {
         double largest = 0;
@@ -41,35 +30,46 @@ void factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
             largest = std::max(largest, block.cwiseAbs().maxCoeff());
         shift = std::max(1e-12 * largest, 10 * shift);
     }
+    return shift;
 }
 
 /// One minimisation: the state that its iterations share.
 class Newton {
 public:
     Newton(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options, Context& context)
-        : objective_(objective), cholesky_(cholesky), x_(x), options_(options), context_(context) {}
+        : objective_(objective), cholesky_(cholesky), x_(x), options_(options), context_(context),
+          script_(objective.system().prescribed(), objective.script_of()) {}
 
     NewtonSummary run(const std::function<void(const NewtonIteration&)>& observe) {
         value_ = evaluate(x_);
         for (;;) {
             if (context_.cancelled())
                 return ended(NewtonEnd::cancelled, "cancelled");
-            const VecX u = step_to_targets();
+            const VecX u = script_.step(x_, objective_.targets(), options_.target_tolerance);
+            summary_.remaining = script_.remaining();
             const Direction direction = newton_direction(u);
+            if (script_.waits() && direction.norm <= options_.tolerance) {
+                script_.go_on();
+                continue;
+            }
             if (finished(direction))
                 return summary_;
-            penalty_.raise_for(direction);
+            raise_penalty(direction);
             const double alpha = line_search(direction);
-            short_steps_ = alpha < options_.short_step ? short_steps_ + 1 : 0;
+            count_cuts(direction, alpha);
+            if (script_.drives() && (alpha == 0 || cut_steps_ >= options_.most_cut_steps)) {
+                block_script();
+                continue;
+            }
             if (alpha == 0)
-                return ended(NewtonEnd::stalled, fmt::format("no decrease along a step of {:.3g} m at vertex {}",
-                                                             direction.norm, direction.worst_vertex));
+                return ended(NewtonEnd::stalled, "no decrease along a step of " + in_words(direction));
             accept(u, alpha);
             if (observe)
-                observe({summary_.iterations, value_, direction.norm, alpha, summary_.remaining});
+                observe({summary_.iterations, value_, direction.norm, alpha, summary_.remaining,
+                         std::exchange(limit_is_news_, false) ? limit_ : StepLimit{}});
             if (short_steps_ >= options_.max_short_steps)
-                return ended(NewtonEnd::stalled, fmt::format("steps of {:.3g} m at vertex {} are cut again and again",
-                                                             direction.norm, direction.worst_vertex));
+                return ended(NewtonEnd::stalled,
+                             "steps are cut again and again, the last one of " + in_words(direction));
         }
     }
 
@@ -82,21 +82,64 @@ private:
     NewtonSummary ended(NewtonEnd end, const std::string& message) {
         summary_.end = end;
         summary_.message = message;
+        if (end != NewtonEnd::converged && !limit_.cause.empty())
+            summary_.message += fmt::format("; last cut by {}: {}", limit_.cause, limit_.detail);
         return summary_;
     }
 
-    VecX step_to_targets() {
-        const auto& prescribed = objective_.system().prescribed();
-        VecX u = VecX::Zero(x_.size());
-        for (Eigen::Index i = 0; i < x_.size(); ++i)
-            if (prescribed[static_cast<std::size_t>(i)])
-                u[i] = objective_.targets()[i] - x_[i];
-        if (u.lpNorm<Eigen::Infinity>() <= options_.target_tolerance)
-            u.setZero();
-        summary_.remaining = largest_nodal_norm(u);
-        if (summary_.remaining == 0)
-            penalty_.share = 0;
-        return u;
+    static std::string in_words(const Direction& direction) {
+        return fmt::format("{:.3g} m at vertex {}", direction.norm, direction.worst_vertex);
+    }
+
+    /// Counts steps that are cut short, and finds out what cuts them.
+    void count_cuts(const Direction& direction, double alpha) {
+        short_steps_ = alpha < options_.short_step ? short_steps_ + 1 : 0;
+        cut_steps_ = alpha < options_.cut_step ? cut_steps_ + 1 : 0;
+        if (cut_steps_ == 0)
+            return;
+        if (cut_steps_ == 1) {
+            before_cuts_ = x_;
+            value_before_cuts_ = value_;
+            penalty_before_cuts_ = script_.penalty();
+        }
+        if (cut_steps_ == 1 || !script_.drives()) // a script's further ones are taken back
+            limit_ = what_cut(direction, alpha);
+        limit_is_news_ = limit_is_news_ || cut_steps_ == options_.most_cut_steps;
+    }
+
+    StepLimit what_cut(const Direction& direction, double alpha) {
+        const double searched = feasible_ > 0 ? alpha / feasible_ : 1;
+        if (feasible_ <= searched) {
+            const StepLimit limit = objective_.step_limit(x_, direction.d);
+            return limit.cause.empty() ? StepLimit{"step filter", fmt::format("{:.3g} of a step is safe", feasible_)}
+                                       : limit;
+        }
+        if (shift_ > 0)
+            return {"indefiniteness",
+                    fmt::format("the Hessian was shifted by {:.3g}, and the value sinks along {:.3g} of the safe step "
+                                "only",
+                                shift_, searched)};
+        return {"line search", fmt::format("the value sinks along {:.3g} of the safe step only", searched)};
+    }
+
+    /// Takes back the steps that were cut, which only squeeze what is in the way, and lets the free unknowns go first.
+    void block_script() {
+        if (cut_steps_ > 1) {
+            x_ = before_cuts_;
+            value_ = value_before_cuts_;
+            script_.penalty() = penalty_before_cuts_;
+        }
+        script_.block();
+        short_steps_ = cut_steps_ = 0;
+        full_step_ = false;
+    }
+
+    /// Makes the quadratic model of the merit decrease along the whole step.
+    void raise_penalty(const Direction& direction) {
+        ScriptPenalty& penalty = script_.penalty();
+        if (script_.drives())
+            penalty.weight =
+                std::max(penalty.weight, 2 * (direction.slope + std::max(direction.curvature, 0.0)) / penalty.share);
     }
 
     /// Where the last step was taken in full, the last factor is tried first: a step with it that is half of the
@@ -104,7 +147,7 @@ private:
     Direction newton_direction(const VecX& u) {
         objective_.gradient(x_, gradient_);
         objective_.system().set_prescribed_step(u);
-        if (full_step_ && penalty_.share == 0 && factor_is_current_choice()) {
+        if (full_step_ && !script_.drives() && factor_is_current_choice()) {
             const Direction simplified = solve(u);
             if (simplified.norm <= simplified_contraction * summary_.step_norm)
                 return chosen(simplified);
@@ -144,11 +187,12 @@ private:
     /// constant factor only. So where the last step was taken in full the exact Hessian is tried, and the projected one
     /// serves when that is indefinite; after a failure it is left alone for a while.
     void factorize(NewtonSystem& system) {
-        if (full_step_ && penalty_.share == 0 && exact_wait_ == 0) {
+        if (full_step_ && !script_.drives() && exact_wait_ == 0) {
             objective_.assemble(x_, system, false);
             PhaseScope scope(context_.times, Phase::linear_solve);
             if (cholesky_.factorize(system)) {
                 exact_failures_ = 0;
+                shift_ = 0;
                 factor_ = Factor::exact;
                 return;
             }
@@ -157,7 +201,7 @@ private:
         exact_wait_ = std::max(0, exact_wait_ - 1);
         objective_.assemble(x_, system, true);
         PhaseScope scope(context_.times, Phase::linear_solve);
-        factorize_shifted(cholesky_, system);
+        shift_ = factorize_shifted(cholesky_, system);
         factor_ = Factor::projected;
     }
 
@@ -167,34 +211,37 @@ private:
             ended(NewtonEnd::stalled, fmt::format("the step is not finite at vertex {}", direction.worst_vertex));
             return true;
         }
-        if (summary_.remaining == 0 && direction.norm <= options_.tolerance) {
-            ended(NewtonEnd::converged, "converged");
+        if (direction.norm <= options_.tolerance && (summary_.remaining == 0 || script_.gave_up())) {
+            if (summary_.remaining == 0)
+                ended(NewtonEnd::converged, "converged");
+            else
+                ended(NewtonEnd::blocked, fmt::format("the script is blocked {:.3g} m short", summary_.remaining));
             return true;
         }
         if (summary_.iterations < options_.max_iterations)
             return false;
         ended(NewtonEnd::iteration_cap,
-              fmt::format("cut short after {} iterations with a step of {:.3g} m at vertex {}", summary_.iterations,
-                          direction.norm, direction.worst_vertex));
+              fmt::format("cut short after {} iterations with a step of {}", summary_.iterations, in_words(direction)));
         return true;
     }
 
     /// The step length that was accepted, with trial_ and trial_value_ at its end; 0 when none was.
     double line_search(const Direction& direction) {
         PhaseScope scope(context_.times, Phase::line_search);
-        const double merit = value_ + penalty_.value();
-        const double merit_slope = direction.slope - penalty_.value();
+        ScriptPenalty& penalty = script_.penalty();
+        const double merit = value_ + penalty.value();
+        const double merit_slope = direction.slope - penalty.value();
         const double noise = objective_.round_off() + 1e-14 * std::max(std::abs(value_), std::abs(merit));
-        double alpha = objective_.max_step(x_, direction.d);
+        double alpha = feasible_ = objective_.max_step(x_, direction.d);
         for (int halving = 0; halving <= options_.max_halvings && alpha > 0; ++halving, alpha *= 0.5) {
             trial_ = x_ + alpha * direction.d;
             trial_value_ = evaluate(trial_);
-            const double trial_merit = trial_value_ + penalty_.value() * (1 - alpha);
+            const double trial_merit = trial_value_ + penalty.value() * (1 - alpha);
             if (trial_merit <= merit + options_.sufficient_decrease * alpha * merit_slope + noise)
-                return alpha == 1 && penalty_.share == 0 ? extended(direction) : alpha;
+                return alpha == 1 && !script_.drives() ? extended(direction) : alpha;
             // Contact that begins on the way is not in the model that set the weight: it is raised to what this takes.
-            if (penalty_.share > 0 && halving >= most_script_halvings && std::isfinite(trial_value_)) {
-                penalty_.weight = std::max(penalty_.weight, 2 * (trial_value_ - value_) / (penalty_.share * alpha));
+            if (script_.drives() && halving >= most_script_halvings && std::isfinite(trial_value_)) {
+                penalty.weight = std::max(penalty.weight, 2 * (trial_value_ - value_) / (penalty.share * alpha));
                 return alpha;
             }
         }
@@ -228,11 +275,11 @@ private:
     void accept(const VecX& u, double alpha) {
         std::swap(x_, trial_);
         value_ = trial_value_;
-        if (alpha == 1 && summary_.remaining > 0) { // land exactly, free of the rounding of x + u
+        if (alpha == 1 && script_.drives()) { // land exactly, free of the rounding of x + u
             x_ = (u.array() != 0).select(objective_.targets(), x_);
             value_ = evaluate(x_);
         }
-        penalty_.share *= 1 - alpha;
+        script_.penalty().share *= 1 - alpha;
         full_step_ = alpha >= 1;
         ++summary_.iterations;
         objective_.on_accepted(x_);
@@ -244,10 +291,17 @@ private:
     const NewtonOptions& options_;
     Context& context_;
     NewtonSummary summary_;
-    Penalty penalty_;
+    ScriptDrive script_;
     VecX gradient_, trial_;
     double value_ = 0, trial_value_ = 0;
-    int short_steps_ = 0;
+    double feasible_ = 1; ///< share of the last direction that its filter lets through
+    double shift_ = 0;    ///< of the last factorisation
+    int short_steps_ = 0, cut_steps_ = 0;
+    StepLimit limit_;            ///< of the last step that was cut
+    bool limit_is_news_ = false; ///< whether it has yet to be told
+    VecX before_cuts_;
+    double value_before_cuts_ = 0;
+    ScriptPenalty penalty_before_cuts_;
     enum class Factor { none, exact, projected } factor_ = Factor::none;
     static constexpr double simplified_contraction = 0.5;
     static constexpr int most_exact_wait = 8;

@@ -17,11 +17,14 @@ struct NewtonOptions {
     int max_halvings = 40;             ///< of one line search
     int max_short_steps = 30;          ///< stalled after this many steps in a row shorter than short_step
     double short_step = 1e-5;
+    double cut_step = 0.01; ///< steps cut below this share of their length are worth a word
+    int most_cut_steps = 5; ///< in a row, before that word is said and a script is blocked
 };
 
 enum class NewtonEnd {
     converged,
     stalled,       ///< steps became too short, or no decrease could be found
+    blocked,       ///< the free unknowns are at their minimum, but the prescribed ones cannot go on
     iteration_cap, ///< max_iterations were done
     cancelled,
 };
@@ -32,6 +35,7 @@ struct NewtonIteration {
     double step_norm = 0;   ///< largest nodal |d_i|, m
     double step_length = 0; ///< alpha; above 1 where H was too stiff along the step
     double remaining = 0;   ///< largest distance of a prescribed vertex to its target before the step, m
+    StepLimit limit;        ///< what cuts the steps, said once when several in a row are cut short; else empty
 };
 
 struct NewtonSummary {
@@ -47,8 +51,10 @@ struct NewtonSummary {
 /// Projected Newton with a line search (IPC, Li et al. 2020, algorithm 1). Prescribed unknowns take the step to their
 /// targets and the free ones the Newton step that goes with it (static condensation of H); while they are on their
 /// way, the line search works on the exact penalty value(x) + weight * (remaining share), with a weight raised to what
-/// the quadratic model asks for. So a script is followed as fast as feasibility allows and never faster.
-/// Calls observe after each step, and on_progress through it.
+/// the quadratic model asks for. So a script is followed as fast as feasibility allows and never faster. Where steps
+/// are cut again and again, they are taken back and the script is held until the free unknowns are at their minimum,
+/// then driven on; drives that lead nowhere end in `blocked`. Calls observe after each step, and on_progress through
+/// it.
 NewtonSummary minimize(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options,
                        Context& context, const std::function<void(const NewtonIteration&)>& observe = {});
 

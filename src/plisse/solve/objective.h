@@ -1,8 +1,17 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <plisse/linalg/newton_system.h>
 
 namespace plisse {
+
+/// What keeps a step short, in words.
+struct StepLimit {
+    std::string cause;  ///< such as "contact"; empty where nothing does
+    std::string detail; ///< what exactly, and where
+};
 
 /// What a solver minimises: a function of 3n unknowns, some of which are prescribed and on their way to given targets.
 /// The solver knows of nothing else. Calls at the same x may share work, so x is passed by value identity.
@@ -22,8 +31,15 @@ public:
     virtual NewtonSystem& system() = 0;
     /// Targets of the prescribed unknowns; other entries mean nothing.
     virtual const VecX& targets() const = 0;
+    /// Number of the script that each prescribed unknown follows; empty where all follow one.
+    virtual const std::vector<int>& script_of() const {
+        static const std::vector<int> one;
+        return one;
+    }
     /// Largest alpha in [0, 1] for which the whole way from x to x + alpha d is feasible.
     virtual double max_step(const VecX& x, const VecX& d) = 0;
+    /// What keeps max_step(x, d) below 1. May take as long as that.
+    virtual StepLimit step_limit(const VecX&, const VecX&) { return {}; }
     /// Called with every accepted x.
     virtual void on_accepted(const VecX&) {}
 };
