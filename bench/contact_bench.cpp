@@ -52,14 +52,18 @@ double size_of(const Candidates& candidates) {
     return candidates.size(kinds[0]) + candidates.size(kinds[1]);
 }
 
-/// Goes once more through what the run asked for, in the order of Contact::max_step.
+/// Goes once more through what the run asked for, in the order of Contact::max_step. Pairs are found along whole steps:
+/// the run has none so long that it would be cut for memory.
 class Replay {
 public:
     explicit Replay(const CrowdedRun& run)
         : run_(run), candidates_(run.mesh, run.options.distance, run.options.self), active_(run.mesh, run.options) {
+        const Positions* last = nullptr;
         for (const StepQuery& query : run.queries) {
             filter(query);
-            note_active(query.x);
+            if (!last || *last != query.x) // else a longer step is tried from the same place
+                note_active(query.x);
+            last = &query.x;
             for (const Positions& trial : query.trials)
                 evaluate(trial);
         }
