@@ -164,12 +164,15 @@ TEST(BruteForce, CandidatesHoldEveryNearPairAndNoOther) {
         Candidates candidates(mesh, c.distance, c.self);
         std::set<Pair> allowed;
         visit_pairs(c, mesh, [&](const Pair& pair, double) { allowed.insert(pair); });
-        const auto check = [&](const Positions& at) {
-            ASSERT_TRUE(candidates.contain(at));
-            const auto found = found_pairs(candidates);
+        std::map<Pair, double> found;
+        const auto take_found = [&] {
+            found = found_pairs(candidates);
             found_count += static_cast<int>(found.size());
             for (const auto& [pair, rest_distance] : found)
                 ASSERT_TRUE(allowed.contains(pair));
+        };
+        const auto check = [&](const Positions& at) {
+            ASSERT_TRUE(candidates.contain(at));
             for (const auto& [pair, distance] : near_pairs(c, mesh, at, c.distance)) {
                 ++near_count;
                 ASSERT_TRUE(found.contains(pair)) << distance;
@@ -178,11 +181,14 @@ TEST(BruteForce, CandidatesHoldEveryNearPairAndNoOther) {
             }
         };
         candidates.find_around(x);
+        take_found();
         check(x);
         const double share = candidates.find_along(x, c.motion, 1);
+        take_found();
         for (const double t : {0.0, 0.4, 1.0})
             check(x + t * share * c.motion);
     }
+    std::printf("%d near pairs, %d found\n", near_count, found_count);
     EXPECT_GT(near_count, 50'000);
     EXPECT_LT(found_count, 40 * near_count);
 }
