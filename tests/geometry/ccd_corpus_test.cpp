@@ -11,6 +11,7 @@
 #include <plisse/base/parallel.h>
 
 #include "geometry/ccd_truth.h"
+#include "geometry/reference_distance.h"
 
 namespace plisse {
 namespace {

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include <CGAL/Interval_nt.h>
+
+#include "geometry/reference_distance.h"
 
 namespace plisse {
 
@@ -159,49 +159,7 @@ double FirstContact::approximation() {
 
 namespace {
 
-using LongVec3 = Eigen::Matrix<long double, 3, 1>;
 using Interval = CGAL::Interval_nt<false>;
-
-/// The corners of the set of differences between points of two primitives, in order around it, as corners {i, j}.
-std::vector<std::array<int, 2>> difference_corners(StencilKind kind) {
-    if (kind == StencilKind::point_triangle)
-        return {{0, 1}, {0, 2}, {0, 3}};
-    return {{0, 2}, {1, 2}, {1, 3}, {0, 3}};
-}
-
-struct Direction {
-    Vec3 unit = Vec3::Zero();
-    long double distance = 0; ///< of all corners from the origin, along it
-};
-
-/// The direction from the origin in which the corners of a flat convex polygon, a triangle or a parallelogram, are
-/// furthest. If the origin is not in it, that direction points to the nearest corner, square to an edge, or to the
-/// plane.
-Direction furthest_direction(const std::vector<LongVec3>& corners) {
-    Direction best;
-    const auto consider = [&](const LongVec3& n) {
-        const long double length = n.stableNorm();
-        if (!(length > 0))
-            return;
-        long double least = std::numeric_limits<long double>::infinity();
-        for (const LongVec3& q : corners)
-            least = std::min(least, (n / length).dot(q));
-        if (least > best.distance)
-            best = {(n / length).cast<double>(), least};
-    };
-    const std::size_t size = corners.size();
-    for (std::size_t k = 0; k < size; ++k) {
-        const LongVec3 &q = corners[k], edge = (corners[(k + 1) % size] - q).stableNormalized();
-        consider(q);
-        const LongVec3 foot = q - q.dot(edge) * edge;
-        consider(foot - foot.dot(edge) * edge); // again, or a near foot is square only to the digits of a far corner
-    }
-    const LongVec3 first = (corners[1] - corners[0]).stableNormalized(), other = corners[size - 1] - corners[0];
-    const LongVec3 normal = first.cross((other - other.dot(first) * first).stableNormalized());
-    consider(normal);
-    consider(-normal);
-    return best;
-}
 
 /// The polygon of differences as it moves.
 class MovingDifferences {
@@ -212,7 +170,7 @@ public:
     Direction furthest_direction_at(double t) const {
         std::vector<LongVec3> points;
         for (const auto& [i, j] : corners_)
-            points.emplace_back(difference<long double>(x_, i, j) + t * difference<long double>(d_, i, j));
+            points.emplace_back(difference(x_, i, j) + t * difference(d_, i, j));
         return furthest_direction(points);
     }
 
@@ -235,20 +193,11 @@ public:
     }
 
 private:
-    template <typename Scalar>
-    static Eigen::Matrix<Scalar, 3, 1> difference(const Stencil& x, int i, int j) {
-        return x.col(i).cast<Scalar>() - x.col(j).cast<Scalar>();
-    }
-
     std::vector<std::array<int, 2>> corners_;
     Stencil x_, d_;
 };
 
 } // namespace
-
-double reference_distance(StencilKind kind, const Stencil& x) {
-    return static_cast<double>(MovingDifferences(kind, x, Stencil::Zero()).furthest_direction_at(0).distance);
-}
 
 bool surely_keep_gap(StencilKind kind, const Stencil& x, const Stencil& d, double gap, double end) {
     constexpr int most_pieces = 20000;

@@ -26,10 +26,6 @@ private:
     std::vector<Root> times_; ///< moments of touching; the first is among them
 };
 
-/// The distance of two primitives in extended precision, by another way than the solver's: the largest, over a few
-/// directions one of which is that between the closest points, of the distance along the direction. Never negative.
-double reference_distance(StencilKind kind, const Stencil& x);
-
 /// Whether planes prove, in interval arithmetic, that the two primitives stay apart by more than `gap` >= 0 at every
 /// moment of [0, end]. A proof always exists when they do so by a few roundings.
 bool surely_keep_gap(StencilKind kind, const Stencil& x, const Stencil& d, double gap, double end);

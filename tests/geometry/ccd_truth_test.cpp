@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/known_motions.h"
+#include "geometry/reference_distance.h"
 #include "geometry/stencils.h"
 
 namespace plisse {
