@@ -10,7 +10,7 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-constexpr double strength = 10;     // of the barrier, by the membrane's stiffness
+constexpr double strength = 0.25;   // of the barrier's force, by that of a membrane of strain 1
 constexpr double raised_room = 0.3; // by the width, between a stretch and the limit that was raised for it
 
 } // namespace
@@ -30,7 +30,7 @@ StrainLimit::LimitedFaces StrainLimit::limited_faces(const Discretization& discr
         limited.body.push_back(body);
         limited.limits.limit.push_back(limit);
         limited.limits.onset.push_back(onset);
-        limited.limits.stiffness.push_back(strength * material.youngs_modulus * material.thickness * width * width);
+        limited.limits.stiffness.push_back(strength * material.youngs_modulus * material.thickness * width);
     }
     return limited;
 }

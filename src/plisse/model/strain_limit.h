@@ -7,8 +7,8 @@
 namespace plisse {
 
 /// The strain limits of all bodies on the mesh of one level: a barrier on the stretches of the faces of bodies that
-/// have one, which begins to act half way to the limit and is stiffer there than the membrane
-/// (docs/decisions/0013).
+/// have one. It begins to act half way to the limit, and its force, whatever the limit is, is a share of what
+/// stretching the membrane to twice its length takes (docs/decisions/0013).
 class StrainLimit {
 public:
     StrainLimit(const Discretization& discretization, int level);
