@@ -116,6 +116,29 @@ TEST(Friction, OpposesTheSlipWithItsLimitBeyondIt) {
     EXPECT_LT(gradient.rowwise().sum().norm(), 1e-12 * limit); // and as much on the obstacle
 }
 
+TEST(Friction, MixesForcesByTheirShares) {
+    Rub rub;
+    const Positions reference = rub.scene.x, lower = rub.shifted(Vec3(0, -1e-3, 0)), at = rub.shifted(Vec3(1e-4, 0, 0));
+    const auto gradient = [&](const Friction& friction) {
+        Positions sum = Positions::Zero(3, at.cols());
+        friction.add_gradient(at, sum);
+        return sum;
+    };
+    const auto lagged_at = [&](const Positions& x) {
+        Friction friction = rub.friction(0.5);
+        friction.begin({reference, {}, false});
+        friction.lag(rub.contact->active_pairs(x), x);
+        return friction;
+    };
+    Friction mixed = lagged_at(reference);
+    const Positions first = gradient(mixed), second = gradient(lagged_at(lower));
+    EXPECT_GT((first - second).norm(), 0.1 * first.norm());
+    mixed.lag(rub.contact->active_pairs(lower), lower, 1, 0.25);
+    EXPECT_LT((gradient(mixed) - 0.75 * first - 0.25 * second).norm(), 1e-12 * first.norm());
+    mixed.lag(rub.contact->active_pairs(lower), lower, 1, 1);
+    EXPECT_EQ(gradient(mixed), second);
+}
+
 TEST(Friction, IsNotFeltWhereNoCoefficientSays) {
     Rub rub;
     EXPECT_FALSE(rub.friction(0).possible());

@@ -189,7 +189,7 @@ protected:
     void save_frame(RunFolder& folder, int number) {
         const Positions x = model_.mesh.positions * (1.0 + number / 3.0);
         folder.on_frame({0, number, 0.1 * number, "preview", &x});
-        folder.on_iteration({0, number, 1, 0.1 * number, 1.0, 0.5, infinity, 0.01, 1.0});
+        folder.on_iteration({0, number, 1, 0.1 * number, 1.0, 0.5, infinity, 0.01, 1.0, {}});
     }
     static std::size_t line_count(const fs::path& path) {
         const std::string text = read_text(path);
@@ -260,6 +260,18 @@ TEST_F(RunFolderTest, RefusesAFolderThatExistsUnlessTold) {
     scene_ = read_scene(output() / "scene.json");
     EXPECT_NO_THROW(open(Existing::overwrite)) << "a run may be written over by its own scene";
     EXPECT_TRUE(fs::exists(output() / "meshes/m-2.obj"));
+}
+
+TEST_F(RunFolderTest, LogsWhatCutsStepsShort) {
+    {
+        RunFolder folder = open(Existing::refuse);
+        save_frame(folder, 0);
+        folder.on_iteration({0, 1, 2, 0.1, 1.0, 0.5, 1e-9, 0.02, 1e-3, {"contact", "a and b"}});
+    }
+    const std::string log = read_text(output() / "log.jsonl");
+    const std::size_t second = log.find('\n') + 1;
+    EXPECT_FALSE(Json::parse(log.substr(0, second)).contains("cut_by"));
+    EXPECT_EQ(Json::parse(log.substr(second))["cut_by"], Json({{"cause", "contact"}, {"detail", "a and b"}}));
 }
 
 TEST_F(RunFolderTest, ResumesFromTheCheckpointAndForgetsWhatCameAfter) {

@@ -69,16 +69,24 @@ Vec3 Friction::sliding(const Contact& contact, const Positions& x) const {
     return motion - contact.normal.dot(motion) * contact.normal;
 }
 
-void Friction::lag(std::span<const ActivePair> active, const Positions& x, double grip) {
-    contacts_.clear();
+void Friction::lag(std::span<const ActivePair> active, const Positions& x, double grip, double share) {
+    constexpr double least_share = 1e-3;
+    for (Contact& contact : contacts_) {
+        contact.limit *= 1 - share;
+        contact.share *= 1 - share;
+    }
+    std::erase_if(contacts_, [](const Contact& contact) { return contact.share < least_share; });
     grip_ = grip;
     if (!possible_)
         return;
     if (memory_.reference.cols() == 0)
         memory_.reference = x;
     for (const ActivePair& pair : active)
-        if (coefficient(pair) > 0)
+        if (coefficient(pair) > 0) {
             contacts_.push_back(contact(pair, x));
+            contacts_.back().limit *= share;
+            contacts_.back().share = share;
+        }
 }
 
 void Friction::remember(std::span<const ActivePair> active, const Positions& x) {

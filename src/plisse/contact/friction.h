@@ -48,8 +48,8 @@ public:
 
     /// Takes normal forces and normals from the pairs that are active at x. A grip above 1 multiplies the forces: where
     /// they have yet to build up, a step would slide on what there is of them. A contact that memory() does not know
-    /// of, where it knows contacts, starts without a force.
-    void lag(std::span<const ActivePair> active, const Positions& x, double grip = 1);
+    /// of, where it knows contacts, starts without a force. A share below 1 mixes: the rest stays as it was.
+    void lag(std::span<const ActivePair> active, const Positions& x, double grip = 1, double share = 1);
     /// Brings memory() up to date with the pairs that are active at x, where a step has ended: a contact that has moved
     /// on by more than e gives up the rest, so that it keeps its force and sticks where it is.
     void remember(std::span<const ActivePair> active, const Positions& x);
@@ -72,7 +72,8 @@ private:
         Vec3 normal;
         Vec3 slipped;
         Vec3 origin;      ///< m: of the relative motion, sum_i w_i reference_i + slipped
-        double limit = 0; ///< mu N, N
+        double limit = 0; ///< mu N times its share, N
+        double share = 1; ///< of the mixture
     };
     double coefficient(const ActivePair& pair) const;
     Contact contact(const ActivePair& pair, const Positions& x) const;

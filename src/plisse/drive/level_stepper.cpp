@@ -16,6 +16,7 @@ constexpr double largest_residual = 1e-3; // of the largest nodal force of any o
 constexpr int preview_iteration_cap = 20;
 constexpr int final_iteration_cap = 1000;
 constexpr int most_friction_updates = 30; // of the normal forces, in one step
+constexpr int most_whole_updates = 5;     // then by halves, lest forces and positions chase each other in circles
 
 LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     switch (summary.end) {
@@ -125,7 +126,8 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
     bool gripped = problem_.friction_grips();
     NewtonSummary whole = solve_step(t, tolerance, phase, most_iterations);
     NewtonSummary part = whole;
-    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_); ++update) {
+    const auto share = [](int update) { return update < most_whole_updates ? 1 : 0.5; };
+    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_, share(update)); ++update) {
         if (part.iterations == 0 && !gripped)
             break;
         gripped = false;

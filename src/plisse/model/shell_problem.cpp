@@ -228,11 +228,11 @@ void ShellProblem::remember_friction(const VecX& x) {
     friction_->remember(contact_->active_pairs(points), points);
 }
 
-bool ShellProblem::update_friction(const VecX& x) {
+bool ShellProblem::update_friction(const VecX& x, double share) {
     if (!friction_->possible())
         return false;
     const Positions& points = level_positions(x);
-    friction_->lag(contact_->active_pairs(points), points);
+    friction_->lag(contact_->active_pairs(points), points, 1, share);
     return true;
 }
 

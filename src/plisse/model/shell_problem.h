@@ -60,8 +60,8 @@ public:
     void remember_friction(const VecX& x);
     /// Whether forces are still those of a first step's grip.
     bool friction_grips() const { return friction_->possible() && friction_->grips(); }
-    /// Brings the normal forces that friction goes by up to x. False where nothing can rub.
-    bool update_friction(const VecX& x);
+    /// Brings this share of the normal forces that friction goes by up to x. False where nothing can rub.
+    bool update_friction(const VecX& x, double share = 1);
 
     double value(const VecX& x) override;
     double round_off() const override { return value_round_off_; }
