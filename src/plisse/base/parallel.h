@@ -38,10 +38,18 @@ int thread_count();
 class LoopOrder {
 public:
 #ifdef __SANITIZE_THREAD__
-    LoopOrder() { __tsan_release(&begun_); }
-    ~LoopOrder() { __tsan_acquire(&ended_); }
-    void begin_piece() { __tsan_acquire(&begun_); }
-    void end_piece() { __tsan_release(&ended_); }
+    LoopOrder() {
+        __tsan_release(&begun_);
+    }
+    ~LoopOrder() {
+        __tsan_acquire(&ended_);
+    }
+    void begin_piece() {
+        __tsan_acquire(&begun_);
+    }
+    void end_piece() {
+        __tsan_release(&ended_);
+    }
 
 private:
     char begun_ = 0, ended_ = 0;

@@ -1,5 +1,6 @@
 #include <plisse/drive/limit_relaxation.h>
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
@@ -59,6 +60,8 @@ LimitRelaxationResult relax_to_strain_limits(const Discretization& discretizatio
     options.tolerance = discretization.model().solve.tolerance * discretization.model().solve.time_step;
     options.max_iterations = iterations_of_round;
     VecX unknowns = as_vector(x);
+    // Surfaces may still be nearer than their contact thickness, which is mended next.
+    problem.enforce_thickness(std::min(1.0, 0.9 * problem.least_thickness_share(unknowns)));
     for (const Flags& held : held_unknowns(discretization, level, is_new)) {
         double stiffness = 1;
         for (int round = 0; round < most_rounds && excess.faces > 0 && !context.cancelled(); ++round) {
