@@ -36,7 +36,7 @@ TEST(BroadPhaseMemory, PairsAroundAreAFixedNumberForEachVertex) {
         Candidates candidates(mesh, 0.1 / n, true);
         candidates.find_around(scene.x);
         EXPECT_GT(most_pairs(candidates), 10 * scene.x.cols());
-        EXPECT_LT(most_pairs(candidates), 50 * scene.x.cols());
+        EXPECT_LT(most_pairs(candidates), 60 * scene.x.cols());
     }
 }
 

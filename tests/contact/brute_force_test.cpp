@@ -234,7 +234,8 @@ TEST(BruteForce, ActivePairsGapsAndEnergiesAgree) {
             const double distance = found->second;
             const double rest = reference_distance(pair.first, gather(c.rest, pair.second));
             const double activation = rest > 0 ? std::min(c.distance, 0.5 * rest) : c.distance;
-            if (rest >= c.distance)
+            if (rest >= c.distance || mesh.part[static_cast<std::size_t>(pair.second[0])] !=
+                                          mesh.part[static_cast<std::size_t>(pair.second[3])])
                 gap = std::min(gap, distance);
             if (distance >= activation)
                 return;
