@@ -110,7 +110,7 @@ void run_corpus(int queries_per_family, Counts& total) {
 
 TEST(CcdCorpus, SampleHasNoFalseNegatives) {
     Counts total;
-    run_corpus(400, total);
+    run_corpus(300, total);
 }
 
 TEST(SlowCcdCorpus, TwoMillionQueriesHaveNoFalseNegatives) {
