@@ -6,9 +6,9 @@
 #include <set>
 
 #include <plisse/base/parallel.h>
-#include <plisse/geometry/barrier.h>
 #include <plisse/contact/candidates.h>
 #include <plisse/contact/pair_energy.h>
+#include <plisse/geometry/barrier.h>
 #include <plisse/geometry/mollifier.h>
 #include <plisse/spatial/intersections.h>
 

@@ -1,5 +1,6 @@
 #include <plisse/drive/limit_relaxation.h>
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>

@@ -4,8 +4,9 @@
 
 namespace plisse {
 
-/// The barrier b(X) = -(X - 1)^2 ln X, 0 from X = 1 on, of what is left of some room, relative to where it begins to act
-/// (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives. Contact's X is a squared distance.
+/// The barrier b(X) = -(X - 1)^2 ln X, 0 from X = 1 on, of what is left of some room, relative to where it begins to
+/// act (IPC, Li et al. 2020, equation 6, without its dimensions), and its derivatives. Contact's X is a squared
+/// distance.
 struct Barrier {
     double value = 0, first = 0, second = 0;
 };
