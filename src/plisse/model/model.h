@@ -13,12 +13,13 @@ namespace plisse {
 
 /// An isotropic shell material.
 struct Material {
-    double density = 472.6;                            ///< kg/m^3 of solid, > 0
-    double youngs_modulus = 8e5;                       ///< Pa, > 0
-    double poisson_ratio = 0.243;                      ///< in (-1, 0.5)
-    double thickness = 3e-4;                           ///< m, > 0
-    double bending_scale = 1;                          ///< c of DESIGN.md section 4, >= 0
-    std::optional<double> strain_limit = std::nullopt; ///< largest principal stretch, > 1; empty: none
+    double density = 472.6;       ///< kg/m^3 of solid, > 0
+    double youngs_modulus = 8e5;  ///< Pa, > 0
+    double poisson_ratio = 0.243; ///< in (-1, 0.5)
+    double thickness = 3e-4;      ///< m, > 0
+    double bending_scale = 1;     ///< c of DESIGN.md section 4, >= 0
+    /// Largest principal stretch, > 1; empty: none.
+    std::optional<double> strain_limit = std::nullopt;
 };
 
 /// Half-open range of vertices or faces of the model's mesh.
