@@ -90,7 +90,7 @@ Reduce coarser(double factor, double time_step) {
 void as_it_is(Scene&) {}
 
 TEST(Stress, ClothIsPulledThroughAFunnel) {
-    expect_arrived(run_scene("funnel", coarser(3, 0.08)));
+    expect_arrived(run_scene("funnel", coarser(4, 0.1)));
 }
 
 TEST(Stress, ClothIsPulledThroughARing) {
