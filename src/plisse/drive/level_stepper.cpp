@@ -76,7 +76,8 @@ void LevelStepper::begin_settling_step(double t, double h) {
 bool LevelStepper::scripts_have_arrived() {
     const auto& prescribed = problem_.system().prescribed();
     for (Eigen::Index i = 0; i < x_.size(); ++i)
-        if (prescribed[static_cast<std::size_t>(i)] && x_[i] != problem_.targets()[i])
+        if (prescribed[static_cast<std::size_t>(i)] &&
+            std::abs(x_[i] - problem_.targets()[i]) > NewtonOptions{}.target_tolerance)
             return false;
     return true;
 }
@@ -231,10 +232,11 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
         const VecX before = x_;
         const double h = progress_.settle_time_step;
         begin_settling_step(t, h);
-        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short. Only
-        // scripts that have yet to arrive may not wait.
-        const int most = scripts_have_arrived() ? std::min(iteration_cap(), preview_iteration_cap)
-                                                : settings_.max_iterations_per_step.value_or(final_iteration_cap);
+        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short. But a
+        // script that has not arrived in one is blocked, and that takes longer to find out.
+        const int most = progress_.settle_step == 0 || scripts_have_arrived()
+                             ? std::min(iteration_cap(), preview_iteration_cap)
+                             : settings_.max_iterations_per_step.value_or(final_iteration_cap);
         const NewtonSummary summary = solve_rubbing_step(t, progress_.settle_tolerance, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
@@ -256,6 +258,8 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
             progress_.settle_tolerance *= 0.1;
         if (summary.end == NewtonEnd::stalled)
             progress_.settle_time_step = std::max(0.1 * h, 1e-3 * settings_.time_step);
+        else if (summary.end == NewtonEnd::iteration_cap && problem_.friction_possible())
+            progress_.settle_time_step = std::max(0.5 * h, 1e-3 * settings_.time_step); // lest it rubs to and fro
         else if (summary.iterations <= most / 2)
             progress_.settle_time_step = std::min(2 * h, largest_growth * settings_.time_step);
         save_checkpoint(t);

@@ -58,8 +58,10 @@ public:
     const FrictionMemory& friction_memory() const { return friction_->memory(); }
     /// Lets contacts take in that the step has ended at x.
     void remember_friction(const VecX& x);
+    /// Whether anything could rub.
+    bool friction_possible() const { return friction_->possible(); }
     /// Whether forces are still those of a first step's grip.
-    bool friction_grips() const { return friction_->possible() && friction_->grips(); }
+    bool friction_grips() const { return friction_possible() && friction_->grips(); }
     /// Brings this share of the normal forces that friction goes by up to x. False where nothing can rub.
     bool update_friction(const VecX& x, double share = 1);
 
