@@ -83,9 +83,14 @@ TEST_P(RestingStack, IsAsHighAsItsSheetsAreThick) {
 }
 
 /// Ten thicknesses high from above, and from sheets within each other's thickness.
-INSTANTIATE_TEST_SUITE_P(Spacings, RestingStack,
+INSTANTIATE_TEST_SUITE_P(, RestingStack,
                          testing::Combine(testing::Values(Method::direct, Method::progressive),
-                                          testing::Values(1.3, 0.4)));
+                                          testing::Values(1.3, 0.4)),
+                         [](const auto& stack) {
+                             const auto [method, spacing] = stack.param;
+                             return std::string(method == Method::direct ? "Direct" : "Progressive") +
+                                    (spacing > 1 ? "FromAbove" : "FromWithin");
+                         });
 
 TEST(ContactThickness, LeavesABodyAtRestAlone) {
     Model model = empty_model("thick sheet with a fine mesh");

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <utility>
 
 #include <plisse/drive/run.h>
 #include <plisse/scene/build_model.h>
@@ -137,7 +136,13 @@ TEST(Stress, TwistOfOneTurnEachIsRefined) {
     }));
 }
 
-class SlowStress : public testing::TestWithParam<std::pair<const char*, void (*)(const RunReport&)>> {};
+struct FullScene {
+    const char* name;
+    void (*expect_end)(const RunReport&);
+    friend void PrintTo(const FullScene& scene, std::ostream* out) { *out << scene.name; }
+};
+
+class SlowStress : public testing::TestWithParam<FullScene> {};
 
 TEST_P(SlowStress, EndsAsItMust) {
     const auto& [name, expect_end] = GetParam();
@@ -146,10 +151,10 @@ TEST_P(SlowStress, EndsAsItMust) {
 
 INSTANTIATE_TEST_SUITE_P(
     , SlowStress,
-    testing::Values(std::pair("funnel", expect_arrived), std::pair("ring", expect_arrived),
-                    std::pair("fast_sweep", expect_clear_end), std::pair("character_squeeze", expect_arrived),
-                    std::pair("trapped", expect_lag_of_ball_and_block), std::pair("crumple_box", expect_arrived),
-                    std::pair("twist_direct", expect_arrived), std::pair("twist_progressive", expect_arrived)),
-    [](const auto& scene) { return scene.param.first; });
+    testing::Values(FullScene{"funnel", expect_arrived}, FullScene{"ring", expect_arrived},
+                    FullScene{"fast_sweep", expect_clear_end}, FullScene{"character_squeeze", expect_arrived},
+                    FullScene{"trapped", expect_lag_of_ball_and_block}, FullScene{"crumple_box", expect_arrived},
+                    FullScene{"twist_direct", expect_arrived}, FullScene{"twist_progressive", expect_arrived}),
+    [](const auto& scene) { return scene.param.name; });
 
 } // namespace

@@ -12,10 +12,6 @@ namespace {
 constexpr int chunk_size = 512;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
-
 /// Two parallel sheets of like triangles meet, per area A, in 2 A / vertex area point-triangle pairs, from both sides,
 /// and in about 2.4 A / edge area crossing edges: with these shares the pressure between them comes to 1.1 times that
 /// of one barrier per area, plus what edges and corners beside each other add (measured: 1.3 to 1.4 in all where the
@@ -64,13 +60,15 @@ void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int b
     chunk.least_gap = infinity;
     chunk.least_thickness_share = infinity;
     for (int i = begin; i < end; ++i) {
+        const double least_distance = candidates.least_distance(kind, i, drift_);
+        if (least_distance >= options_.reach())
+            continue;
         const auto vertices = candidates.vertices(kind, i);
-        const bool same_part = mesh_.part[at(vertices[0])] == mesh_.part[at(vertices[3])];
         const double rest_distance = candidates.rest_distance(kind, i);
-        const PairRange range = pair_range(options_, same_part, rest_distance);
-        const bool counts_as_gap = !same_part || rest_distance >= options_.reach();
+        const PairRange range = pair_range(options_, same_part(vertices), rest_distance);
+        const bool counts_as_gap = !same_part(vertices) || rest_distance >= options_.reach();
         const double farthest = counts_as_gap ? range.thickness + options_.distance : range.activation;
-        if (candidates.least_distance(kind, i, drift_) >= farthest)
+        if (least_distance >= farthest)
             continue;
         const Stencil stencil = gather(x, vertices);
         if (squared_sweep_distance(kind, stencil, stencil) >= farthest * farthest)
@@ -93,8 +91,7 @@ void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int b
 }
 
 PairRange ActiveSet::range(StencilKind kind, int candidate, const Candidates& candidates) const {
-    const auto vertices = candidates.vertices(kind, candidate);
-    return pair_range(options_, mesh_.part[at(vertices[0])] == mesh_.part[at(vertices[3])],
+    return pair_range(options_, same_part(candidates.vertices(kind, candidate)),
                       candidates.rest_distance(kind, candidate));
 }
 

@@ -32,6 +32,9 @@ private:
         double energy = 0, least_gap = 0, least_thickness_share = 0;
     };
 
+    bool same_part(const std::array<int, 4>& stencil) const {
+        return mesh_.part[static_cast<std::size_t>(stencil[0])] == mesh_.part[static_cast<std::size_t>(stencil[3])];
+    }
     void find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
                     Chunk& chunk) const;
     PairParameters parameters(StencilKind kind, const std::array<int, 2>& primitives, const PairRange& range) const;

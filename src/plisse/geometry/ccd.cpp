@@ -53,14 +53,13 @@ double time_above(StencilKind kind, double gap, const Vec3& n, const Stencil& x,
     return time;
 }
 
-/// The unit vector square to both primitives that points from the second to the first. Its second factor is made
-/// square to the first before they are multiplied: however thin the triangle or near parallel the edges, all corners of
-/// a primitive are at one height then but for a rounding.
+/// The unit vector square to both primitives that points from the second to the first: however thin the triangle or
+/// near parallel the edges, all corners of a primitive are at one height along it but for a rounding.
 Vec3 common_normal(StencilKind kind, const Stencil& x) {
     const bool edges = kind == StencilKind::edge_edge;
     const Vec3 u = edges ? x.col(1) - x.col(0) : x.col(2) - x.col(1);
     const Vec3 v = x.col(3) - x.col(edges ? 2 : 1);
-    const Vec3 normal = u.cross(v - v.dot(u) / u.squaredNorm() * u).normalized();
+    const Vec3 normal = cross_square(u, v).normalized();
     return normal.dot(x.col(0) - x.col(3)) < 0 ? Vec3(-normal) : normal;
 }
 

@@ -33,12 +33,6 @@ Stencil relative(const Stencil& x) {
     return x.colwise() - x.col(0);
 }
 
-/// A vector square to u and v, as long as u x v. Its second factor is made square to the first: otherwise the product
-/// of nearly parallel vectors leans towards them by a rounding over their sine, and heights along it are as wrong.
-Vec3 cross_square(const Vec3& u, const Vec3& v) {
-    return u.cross(v - v.dot(u) / u.squaredNorm() * u);
-}
-
 /// Fills in what follows from weights and slides. Rounding leaves parts of y * w along the tangents that are as large
 /// as the offset itself when the primitives nearly touch, so they are taken off.
 void complete(Separation& s, const Stencil& y) {
@@ -137,6 +131,10 @@ Facing face_edges(const Stencil& y) {
 }
 
 } // namespace
+
+Vec3 cross_square(const Vec3& u, const Vec3& v) {
+    return u.cross(v - v.dot(u) / u.squaredNorm() * u);
+}
 
 Separation separate_points(const Vec3& p, const Vec3& q) {
     Separation s;

@@ -28,6 +28,11 @@ struct Separation {
     std::uint8_t corners = 0;    ///< bit i: point i is a corner of the features that the closest points lie in
 };
 
+/// A vector square to u and v, as long as u x v. Its second factor is made square to the first: otherwise the product
+/// of nearly parallel vectors leans towards them by a rounding over their sine, and heights along it are as wrong. NaN
+/// for u = 0.
+Vec3 cross_square(const Vec3& u, const Vec3& v);
+
 Separation separate_points(const Vec3& p, const Vec3& q);
 /// Any edge, of no length too.
 Separation separate_point_edge(const Vec3& p, const Vec3& e0, const Vec3& e1);
