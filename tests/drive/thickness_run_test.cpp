@@ -87,9 +87,9 @@ INSTANTIATE_TEST_SUITE_P(, RestingStack,
                          testing::Combine(testing::Values(Method::direct, Method::progressive),
                                           testing::Values(1.3, 0.4)),
                          [](const auto& stack) {
-                             const auto [method, spacing] = stack.param;
-                             return std::string(method == Method::direct ? "Direct" : "Progressive") +
-                                    (spacing > 1 ? "FromAbove" : "FromWithin");
+                             const bool direct = std::get<0>(stack.param) == Method::direct;
+                             return std::string(direct ? "Direct" : "Progressive") +
+                                    (std::get<1>(stack.param) > 1 ? "FromAbove" : "FromWithin");
                          });
 
 TEST(ContactThickness, LeavesABodyAtRestAlone) {
