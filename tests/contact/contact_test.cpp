@@ -9,9 +9,9 @@
 #include <plisse/contact/candidates.h>
 #include <plisse/contact/pair_energy.h>
 #include <plisse/geometry/barrier.h>
-#include <plisse/geometry/mollifier.h>
 #include <plisse/spatial/intersections.h>
 
+#include "contact/every_place.h"
 #include "contact/sheets.h"
 #include "linalg/dense_system.h"
 
@@ -40,46 +40,6 @@ Scene folded_scene(double gap) {
     return scene;
 }
 
-/// Every pair of primitives that may interact, with its place in a stencil.
-struct AllPairs {
-    const CollisionMesh& mesh;
-    ContactOptions options;
-
-    bool interact(int v, int w) const {
-        const int a = mesh.part[static_cast<std::size_t>(v)], b = mesh.part[static_cast<std::size_t>(w)];
-        if (mesh.obstacle[static_cast<std::size_t>(a)] && mesh.obstacle[static_cast<std::size_t>(b)])
-            return false;
-        return a != b || options.self;
-    }
-    template <typename Visit>
-    void visit(const Visit& call) const {
-        for (const int v : mesh.vertices)
-            for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-                const auto& [a, b, c] = mesh.faces[f];
-                if (v != a && v != b && v != c && interact(v, a))
-                    call(pt, std::array<int, 4>{v, a, b, c},
-                         0.5 * std::min(mesh.vertex_area[static_cast<std::size_t>(v)], mesh.face_area[f]));
-            }
-        for (std::size_t i = 0; i < mesh.edges.size(); ++i)
-            for (std::size_t j = i + 1; j < mesh.edges.size(); ++j) {
-                const auto &p = mesh.edges[i], &q = mesh.edges[j];
-                if (std::set<int>{p[0], p[1], q[0], q[1]}.size() == 4 && interact(p[0], q[0]))
-                    call(ee, std::array<int, 4>{p[0], p[1], q[0], q[1]},
-                         0.25 * std::min(mesh.edge_area[i], mesh.edge_area[j]));
-            }
-    }
-    double rest_distance(StencilKind kind, const std::array<int, 4>& v) const {
-        return std::sqrt(separate(kind, gather(mesh.rest, v)).squared_distance);
-    }
-    PairParameters parameters(StencilKind kind, const std::array<int, 4>& v, double weight) const {
-        const double activation = std::min(options.distance, 0.5 * rest_distance(kind, v));
-        const Stencil rest = gather(mesh.rest, v);
-        const double threshold =
-            1e-3 * (rest.col(1) - rest.col(0)).squaredNorm() * (rest.col(3) - rest.col(2)).squaredNorm();
-        return {weight * options.stiffness * activation, activation * activation, kind == ee ? threshold : 0};
-    }
-};
-
 struct BruteForce {
     double value = 0, least_gap = std::numeric_limits<double>::infinity();
     int active = 0;
@@ -87,38 +47,64 @@ struct BruteForce {
     Eigen::MatrixXd hessian;
 };
 
-BruteForce evaluate_all(const AllPairs& all, const Positions& x) {
+/// Whether it is one of the pairs that are looked for: not an edge or a vertex by itself.
+bool is_pair(const Place& place) {
+    return std::set(place.vertices.begin(), place.vertices.end()).size() == 4;
+}
+
+/// Of the place's own points, by one formula for all.
+Separation separation_of(const Place& place, const Stencil& x) {
+    if (place.kind == ee)
+        return separate_edges(x);
+    if (place.vertices[1] == place.vertices[2])
+        return separate_points(x.col(0), x.col(1));
+    if (place.vertices[2] == place.vertices[3])
+        return separate_point_edge(x.col(0), x.col(1), x.col(2));
+    return separate_point_triangle(x);
+}
+
+PairParameters parameters_of(const Place& place, const ContactOptions& options) {
+    PairParameters p;
+    p.scale = place.count * place.area * options.stiffness * place.range.activation;
+    p.activation_squared = place.range.activation * place.range.activation;
+    for (const int end : place.ends)
+        p.ends |= static_cast<std::uint8_t>(1U << end);
+    return p;
+}
+
+BruteForce evaluate_all(const CollisionMesh& mesh, const ContactOptions& options, const Positions& x) {
     BruteForce result;
     result.gradient = Positions::Zero(3, x.cols());
     result.hessian = Eigen::MatrixXd::Zero(x.size(), x.size());
-    all.visit([&](StencilKind kind, const std::array<int, 4>& v, double weight) {
-        const Stencil s = gather(x, v);
-        const Separation separation = separate(kind, s);
-        const PairParameters p = all.parameters(kind, v, weight);
+    EveryPlace(mesh, options).visit(x, [&](const Place& place) {
+        const Stencil s = points_of(x, place.vertices);
+        const Separation separation = separation_of(place, s);
+        const PairParameters p = parameters_of(place, options);
         const double distance = std::sqrt(separation.squared_distance);
-        if (all.rest_distance(kind, v) >= all.options.distance && distance < all.options.distance)
+        if (place.counts_as_gap && distance < options.distance)
             result.least_gap = std::min(result.least_gap, distance);
         if (separation.squared_distance >= p.activation_squared)
             return;
         ++result.active;
         result.value += pair_energy(p, separation, s);
         const Vec12 gradient = pair_gradient(p, separation, s);
-        const Mat12 hessian = pair_projected_hessian(p, separation, s);
+        const Mat12 hessian = pair_hessian(p, separation, s);
         for (int i = 0; i < 4; ++i) {
-            result.gradient.col(v[static_cast<std::size_t>(i)]) += gradient.segment<3>(3 * i);
+            const int v = place.vertices[static_cast<std::size_t>(i)];
+            result.gradient.col(v) += gradient.segment<3>(3 * i);
             for (int j = 0; j < 4; ++j)
-                result.hessian.block<3, 3>(3 * v[static_cast<std::size_t>(i)], 3 * v[static_cast<std::size_t>(j)]) +=
+                result.hessian.block<3, 3>(3 * v, 3 * place.vertices[static_cast<std::size_t>(j)]) +=
                     hessian.block<3, 3>(3 * i, 3 * j);
         }
     });
     return result;
 }
 
-NewtonSystem system_of(Contact& contact, const Positions& x) {
+NewtonSystem system_of(Contact& contact, const Positions& x, bool project = true) {
     NewtonSystem system(std::vector<std::uint8_t>(static_cast<std::size_t>(x.size()), 0), contact.mesh().edges);
     system.set_prescribed_step(VecX::Zero(x.size()));
     system.begin(contact.coupled_pairs(x));
-    contact.add_hessian(x, system);
+    contact.add_hessian(x, system, project);
     return system;
 }
 
@@ -128,29 +114,28 @@ Positions gradient_of(Contact& contact, const Positions& x) {
     return gradient;
 }
 
-TEST(Contact, AgreesWithAllPairs) {
+TEST(Contact, AgreesWithEveryPlace) {
     constexpr double gap = 0.05;
     const Scene scene = folded_scene(gap);
     Random random(1);
     Positions rest = jittered(scene.x, random, 0.3 * gap); // apart, but not all out of each other's reach
-    rest.row(1) *= 2;
+    rest.row(1) *= 3;
     for (const bool self : {true, false}) {
         ContactOptions options;
         options.distance = gap;
         options.stiffness = 1e3;
         options.self = self;
         Contact contact(scene.mesh(rest), options);
-        const AllPairs all{contact.mesh(), options};
         int active = 0;
         for (int trial = 0; trial < 30; ++trial) {
             // Now and then a leap that leaves the regions, otherwise a small move within them.
             const Positions x = jittered(scene.x, random, trial % 3 ? 0.02 * gap : 0.5 * gap);
-            const BruteForce expected = evaluate_all(all, x);
+            const BruteForce expected = evaluate_all(contact.mesh(), options, x);
             active += expected.active;
-            EXPECT_EQ(contact.active_pair_count(x), expected.active);
+            EXPECT_LE(contact.active_pair_count(x), expected.active);
             EXPECT_NEAR(contact.value(x), expected.value, 1e-12 * expected.value);
-            EXPECT_LT((gradient_of(contact, x) - expected.gradient).norm(), 1e-12 * expected.gradient.norm());
-            EXPECT_LT((dense(system_of(contact, x)) - expected.hessian).norm(), 1e-12 * expected.hessian.norm());
+            EXPECT_LE((gradient_of(contact, x) - expected.gradient).norm(), 1e-12 * expected.gradient.norm());
+            EXPECT_LE((dense(system_of(contact, x, false)) - expected.hessian).norm(), 1e-12 * expected.hessian.norm());
             EXPECT_DOUBLE_EQ(contact.min_gap(x), expected.least_gap);
         }
         EXPECT_GT(active, 300);
@@ -183,6 +168,7 @@ TEST(Candidates, HoldEveryNearPairWhileVerticesStayInTheirRegions) {
     Random random(3);
     Candidates candidates(mesh, gap, true);
     EXPECT_FALSE(candidates.contain(scene.x));
+    const EveryPlace every_place(mesh, {.distance = gap});
     for (int trial = 0; trial < 20; ++trial) {
         const Positions x = jittered(scene.x, random, gap), d = jittered(0 * x, random, 3 * gap);
         const double share = candidates.find_along(x, d, 1);
@@ -198,10 +184,10 @@ TEST(Candidates, HoldEveryNearPairWhileVerticesStayInTheirRegions) {
             const Positions at = jittered(x + t * share * d, random, 0.4 * gap);
             ASSERT_TRUE(candidates.contain(at));
             int near = 0;
-            AllPairs{mesh, {.distance = gap}}.visit([&](StencilKind kind, const std::array<int, 4>& v, double) {
-                if (separate(kind, gather(at, v)).squared_distance < gap * gap) {
+            every_place.visit(at, [&](const Place& place) {
+                if (is_pair(place) && separate(place.kind, gather(at, place.vertices)).squared_distance < gap * gap) {
                     ++near;
-                    EXPECT_TRUE(found.contains({kind, v}));
+                    EXPECT_TRUE(found.contains({place.kind, place.vertices}));
                 }
             });
             EXPECT_GT(near, 20);
@@ -231,7 +217,7 @@ TEST(Contact, StepsUpToTheLimitMakeNoIntersection) {
     ContactOptions options;
     options.distance = gap;
     Contact contact(scene.mesh(), options);
-    const AllPairs all{contact.mesh(), options};
+    const EveryPlace all(contact.mesh(), options);
     int limited = 0, blocked = 0;
     for (int trial = 0; trial < 40; ++trial) {
         const double speed = gap * std::pow(10.0, random.uniform(-1, 2));
@@ -243,9 +229,9 @@ TEST(Contact, StepsUpToTheLimitMakeNoIntersection) {
         for (int k = 1; k <= 40; ++k)
             ASSERT_FALSE(intersects(scene, x + alpha * k / 40 * d)) << trial;
         const Positions end = x + alpha * d;
-        all.visit([&](StencilKind kind, const std::array<int, 4>& v, double) {
-            const double before = std::sqrt(separate(kind, gather(x, v)).squared_distance);
-            const double after = std::sqrt(separate(kind, gather(end, v)).squared_distance);
+        all.visit(end, [&](const Place& place) {
+            const double before = std::sqrt(separate(place.kind, gather(x, place.vertices)).squared_distance);
+            const double after = std::sqrt(separate(place.kind, gather(end, place.vertices)).squared_distance);
             ASSERT_GE(after, std::min(options.ccd_ratio * before, gap) * (1 - 1e-12));
         });
         for (int k = 1; alpha < 1 && k <= 20; ++k)
@@ -347,8 +333,8 @@ TEST(Contact, SilentAtRestHoweverCrumpled) {
     options.distance = gap;
     Contact contact(scene.mesh(rest), options);
     int near = 0;
-    AllPairs{contact.mesh(), options}.visit([&](StencilKind kind, const std::array<int, 4>& v, double) {
-        near += separate(kind, gather(rest, v)).squared_distance < gap * gap;
+    EveryPlace(contact.mesh(), options).visit(rest, [&](const Place& place) {
+        near += is_pair(place) && separate(place.kind, gather(rest, place.vertices)).squared_distance < gap * gap;
     });
     ASSERT_GT(near, 100);
     EXPECT_EQ(contact.value(rest), 0);
@@ -377,12 +363,13 @@ double relative_pressure(int n, double share, double height) {
 }
 
 TEST(Contact, PressureBetweenSheetsIsThatOfOneBarrierHoweverFineTheyAre) {
-    for (const double height : {0.3, 0.6, 0.9}) {
-        const double coarse = relative_pressure(12, 0.1, height), fine = relative_pressure(48, 0.1, height);
-        EXPECT_NEAR(coarse, fine, 0.06 * fine); // the rim of the coarse sheet weighs more
-        EXPECT_GT(fine, 1);
-        EXPECT_LT(fine, 1.6);
-    }
+    for (const double height : {0.3, 0.6, 0.9})
+        for (const double share : {0.1, 0.33}) {
+            const double coarse = relative_pressure(12, share, height), fine = relative_pressure(48, share, height);
+            EXPECT_NEAR(coarse, fine, 0.03 * fine); // the rim of the coarse sheet weighs more
+            EXPECT_GT(fine, share == 0.1 ? 0.95 : 0.85);
+            EXPECT_LT(fine, 1.1);
+        }
 }
 
 TEST(Contact, BodiesFarApartFeelNothing) {

@@ -151,7 +151,9 @@ TEST(Friction, IsNotFeltWhereNoCoefficientSays) {
 
 TEST(Friction, RemembersWhereContactsStickOverSteps) {
     Rub rub;
-    const auto& pairs = rub.contact->active_pairs(rub.scene.x);
+    std::vector<ActivePair> pairs = rub.contact->active_pairs(rub.scene.x);
+    // The force of two edges changes as they move along each other.
+    std::erase_if(pairs, [](const ActivePair& pair) { return pair.kind == StencilKind::edge_edge; });
     Friction friction = rub.friction(0.3);
     friction.begin({rub.scene.x, {}, false});
     friction.lag(pairs, rub.scene.x);

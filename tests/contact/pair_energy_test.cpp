@@ -23,8 +23,20 @@ struct Case {
     Separation separation() const { return separate(kind, x); }
 };
 
-/// Random pairs well inside their activation distance and their feature; every second pair of edges is nearly parallel,
-/// every second pair has a least distance.
+/// Whether an end that counts is the nearest point, where the mollifier is 0.
+bool nearest_at_an_end(const Case& c, const Separation& s) {
+    for (int i = 0; i < 4; ++i)
+        if ((c.parameters.ends >> i & 1) != 0 && squared_distance_end(c.x, i) < 1.01 * s.squared_distance)
+            return true;
+    return false;
+}
+
+bool mollified(const Case& c) {
+    return c.parameters.ends != 0 && !EdgeMollifier(c.separation(), c.x, c.parameters.ends).is_one();
+}
+
+/// Random pairs well inside their activation distance and their feature, those of edges with some of their ends
+/// counted; every second pair has a least distance.
 std::vector<Case> random_cases(int count) {
     Random random(3);
     std::vector<Case> cases;
@@ -32,24 +44,20 @@ std::vector<Case> random_cases(int count) {
         Case c;
         c.kind = random.below(2) ? StencilKind::point_triangle : StencilKind::edge_edge;
         c.x = random_stencil(random);
-        const bool parallel = c.kind == StencilKind::edge_edge && random.below(2);
-        if (parallel)
-            c.x.col(3) =
-                c.x.col(2) + random.uniform(0.5, 1.5) * (c.x.col(1) - c.x.col(0)) + random_vector(random, 0.25);
         const Separation s = c.separation();
         const double activation = std::sqrt(s.squared_distance) * random.uniform(1.05, 30);
-        c.parameters = {random.uniform(0.5, 2), activation * activation, 0};
+        c.parameters = {random.uniform(0.5, 2), activation * activation};
+        if (c.kind == StencilKind::edge_edge)
+            c.parameters.ends = static_cast<std::uint8_t>(1 + random.below(15));
         if (random.below(2))
             c.parameters.least_squared = random.uniform(0, 0.25) * s.squared_distance;
-        if (parallel)
-            c.parameters.mollifier_threshold = cross_squared(c.x) * random.uniform(1.2, 5);
         bool clear = s.squared_distance > 0.005;
         for (int i = 0; i < 4; ++i)
             clear = clear && (s.weights[i] == 0 || std::abs(s.weights[i]) > 0.05);
         if (s.freedom == 2)
             clear = clear && s.tangents.col(0).cross(s.tangents.col(1)).norm() >
                                  0.1 * s.tangents.col(0).norm() * s.tangents.col(1).norm();
-        if (clear)
+        if (clear && !nearest_at_an_end(c, s))
             cases.push_back(c);
     }
     return cases;
@@ -84,9 +92,9 @@ TEST(PairEnergy, DerivativesAgreeWithDifferences) {
         EXPECT_LT((gradient(c.x) - expected_gradient).norm(), 1e-7 * expected_gradient.norm());
         EXPECT_LT((pair_hessian(c.parameters, c.separation(), c.x) - expected_hessian).norm(),
                   1e-6 * expected_hessian.norm());
-        ++seen[{static_cast<int>(c.kind), c.separation().freedom, c.parameters.mollifier_threshold > 0}];
+        ++seen[{static_cast<int>(c.kind), c.separation().freedom, mollified(c)}];
     }
-    EXPECT_EQ(seen.size(), 9U); // each freedom for point-triangle, edge-edge and mollified edge-edge
+    EXPECT_EQ(seen.size(), 9U); // each freedom for point-triangle, edges and mollified edges
 }
 
 double least_eigenvalue(const Mat12& matrix) {
@@ -101,7 +109,7 @@ TEST(PairEnergy, ProjectionIsSemiDefiniteAndNotBelowTheHessian) {
         EXPECT_GE(least_eigenvalue(projected), -round_off);
         EXPECT_GE(least_eigenvalue(projected - hessian), -round_off);
         const Mat12 nearest = positive_part(hessian);
-        if (c.parameters.mollifier_threshold > 0 || c.separation().freedom == 0) {
+        if (mollified(c) || c.separation().freedom == 0) {
             EXPECT_LT((projected - nearest).norm(), 10 * round_off);
         }
     }
@@ -113,7 +121,7 @@ TEST(PairEnergy, ProjectionIsNearestForNearPairsFacingEachOtherInTheMiddle) {
             const Stencil x = kind == StencilKind::point_triangle
                                   ? stencil({0, d, 0}, {-1, 0, 1}, {1, 0, 1}, {0, 0, -2})
                                   : stencil({-1, d, 0}, {1, d, 0}, {0, 0, -1}, {0, 0, 1});
-            const PairParameters p = {1, 0.16, 0};
+            const PairParameters p = {1, 0.16};
             const Mat12 nearest = positive_part(pair_hessian(p, separate(kind, x), x));
             EXPECT_LT((pair_projected_hessian(p, separate(kind, x), x) - nearest).norm(), 1e-12 * nearest.norm());
         }
@@ -123,9 +131,7 @@ TEST(PairEnergy, GaussNewtonPartIsTheSecondDerivativeAcross) {
     for (const Case& c : random_cases(100)) {
         const Separation s = c.separation();
         const double d = std::sqrt(s.squared_distance),
-                     m = c.parameters.mollifier_threshold > 0
-                             ? mollify(cross_squared(c.x), c.parameters.mollifier_threshold).value
-                             : 1;
+                     m = c.parameters.ends != 0 ? EdgeMollifier(s, c.x, c.parameters.ends).value() : 1;
         const auto slope = [&](double at) {
             const double least = c.parameters.least_squared, range = c.parameters.activation_squared - least;
             return 2 * at / range * barrier((at * at - least) / range).first;

@@ -7,38 +7,65 @@
 namespace plisse {
 namespace {
 
-TEST(Mollifier, CrossOfUnitCrossAndOfParallelEdges) {
-    EXPECT_DOUBLE_EQ(cross_squared(stencil({-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0})), 16);
-    EXPECT_EQ(cross_squared(stencil({-1, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {1, 1, 0})), 0);
-    EXPECT_NEAR(cross_squared(stencil({-1, 0, 0}, {1, 0, 0}, {-1, 1, -1e-9}, {1, 1, 1e-9})), 0, 1e-16);
+double value_at(const Stencil& x, std::uint8_t ends = 0b1111) {
+    const Separation s = separate_edges(x);
+    return EdgeMollifier(s, x, ends).value();
 }
 
-TEST(Mollifier, DerivativesOfTheCross) {
+/// Edges one above the other that cross at a share of the lower one.
+Stencil crossing(double share, double height) {
+    return stencil({-share, 0, 0}, {1 - share, 0, 0}, {0, height, -0.5}, {0, height, 0.5});
+}
+
+TEST(EdgeMollifier, IsOneWhereEdgesCrossFarFromTheirEndsAndNothingWhereAnEndIsNearest) {
+    EXPECT_EQ(value_at(crossing(0.5, 0.1)), 1);
+    EXPECT_EQ(value_at(crossing(0, 0.1)), 0);
+    EXPECT_EQ(value_at(crossing(-0.2, 0.1)), 0);
+    EXPECT_EQ(value_at(crossing(-0.2, 0.1), 0b1110), 1);                    // that end does not count
+    const double ratio = 0.01 / (0.01 + 0.0025), q = (ratio - 0.25) / 0.75; // an end 0.05 beside the crossing
+    EXPECT_NEAR(value_at(crossing(0.05, 0.1)), 1 - q * q * q, 1e-14);
+}
+
+TEST(EdgeMollifier, VanishesAsEdgesTurnParallel) {
+    double last = 1;
+    for (const double sine : {1e-1, 1e-2, 1e-4, 1e-8, 0.0}) {
+        const double m = value_at(stencil({-1, 0, 0}, {1, 0, 0}, {-1, 0.2, -sine}, {1, 0.2, sine}));
+        EXPECT_LE(m, std::min(last, 2e3 * std::pow(sine, 4)));
+        last = m;
+    }
+    EXPECT_EQ(last, 0);
+}
+
+TEST(EdgeMollifier, HasNoKinkWhereAnEndBecomesTheNearestPointOrBeginsToCount) {
+    constexpr double h = 1e-6;
+    for (const double share : {0.0, std::sqrt(3) * 0.1}) {
+        const double below = value_at(crossing(share - h, 0.1)), above = value_at(crossing(share + h, 0.1));
+        EXPECT_NEAR(below, above, 1e-8);
+    }
+}
+
+TEST(EdgeMollifier, DerivativesAgreeWithDifferences) {
     Random random(2);
-    for (int trial = 0; trial < 30; ++trial) {
+    int ends_seen = 0, trials = 0;
+    while (trials < 200) {
         const Stencil x = random_stencil(random);
-        const Vec12 gradient = difference_gradient(cross_squared, x, 1e-5);
-        const Mat12 hessian = difference_hessian(cross_squared_gradient, x, 1e-5);
-        EXPECT_LT((cross_squared_gradient(x) - gradient).norm(), 1e-7 * gradient.norm());
-        EXPECT_LT((cross_squared_hessian(x) - hessian).norm(), 1e-6 * hessian.norm());
+        const Separation s = separate_edges(x);
+        const double m = EdgeMollifier(s, x).value();
+        if (s.freedom < 2 || m == 1 || m < 0.05 || s.squared_distance < 0.01)
+            continue;
+        ++trials;
+        const auto gradient_at = [](const Stencil& y) {
+            const Separation separation = separate_edges(y);
+            return EdgeMollifier(separation, y).gradient();
+        };
+        const Vec12 gradient = difference_gradient([](const Stencil& y) { return value_at(y); }, x, 1e-6);
+        const Mat12 hessian = difference_hessian(gradient_at, x, 1e-6);
+        EXPECT_LT((gradient_at(x) - gradient).norm(), 1e-7 * (1 + gradient.norm()));
+        EXPECT_LT((EdgeMollifier(s, x).hessian() - hessian).norm(), 1e-6 * (1 + hessian.norm()));
+        for (int i = 0; i < 4; ++i)
+            ends_seen |= squared_distance_end(x, i) < 4 * s.squared_distance ? 1 << i : 0;
     }
-}
-
-TEST(Mollifier, RunsFromNothingToOneWithoutAKink) {
-    constexpr double threshold = 0.3;
-    EXPECT_EQ(mollify(0, threshold).value, 0);
-    const double below = std::nextafter(threshold, 0);
-    EXPECT_NEAR(mollify(below, threshold).value, 1, 1e-14);
-    EXPECT_NEAR(mollify(below, threshold).first, 0, 1e-14);
-    EXPECT_EQ(mollify(threshold, threshold).value, 1);
-    EXPECT_EQ(mollify(threshold, threshold).first, 0);
-    for (double c = 0.01; c < threshold; c += 0.02) {
-        constexpr double h = 1e-6;
-        const Mollifier low = mollify(c - h, threshold), high = mollify(c + h, threshold);
-        EXPECT_NEAR(mollify(c, threshold).first, (high.value - low.value) / (2 * h), 1e-7);
-        EXPECT_NEAR(mollify(c, threshold).second, (high.first - low.first) / (2 * h), 1e-6);
-    }
-    EXPECT_EQ(mollify(5, 0).value, 1); // point-triangle pairs have no threshold
+    EXPECT_EQ(ends_seen, 0b1111);
 }
 
 } // namespace

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <plisse/geometry/mollifier.h>
-
 namespace plisse {
 
 namespace {
@@ -12,19 +10,31 @@ namespace {
 constexpr int chunk_size = 512;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two parallel sheets of like triangles meet, per area A, in 2 A / vertex area point-triangle pairs, from both sides,
-/// and in about 2.4 A / edge area crossing edges: with these shares the pressure between them comes to 1.1 times that
-/// of one barrier per area, plus what edges and corners beside each other add (measured: 1.3 to 1.4 in all where the
-/// contact distance is a tenth of the edges, 2 where it is a third), on fine meshes as on coarse ones.
-constexpr double point_triangle_share = 0.5, edge_edge_share = 0.25;
+/// Between two parallel sheets of like triangles the points weigh twice their sheets' area A, from both sides, and there
+/// are about 2.4 A / edge area crossing edges: with these shares the pressure comes to that of one barrier per area.
+constexpr double point_share = 0.35, edge_share = 0.15;
+
+/// Candidates of one point follow each other: moves on from `candidate` to the first of its point, or to the end.
+int first_of_point(const Candidates& candidates, int candidate) {
+    constexpr auto kind = StencilKind::point_triangle;
+    while (candidate > 0 && candidate < candidates.size(kind) &&
+           candidates.primitives(kind, candidate)[0] == candidates.primitives(kind, candidate - 1)[0])
+        ++candidate;
+    return candidate;
+}
+
+PairParameters parameters(const PairRange& range, double stiffness) {
+    PairParameters pair;
+    pair.least_squared = range.least * range.least;
+    pair.activation_squared = range.activation * range.activation;
+    pair.scale = stiffness * (range.activation - range.least);
+    return pair;
+}
 
 } // namespace
 
-ActiveSet::ActiveSet(const CollisionMesh& mesh, const ContactOptions& options) : mesh_(mesh), options_(options) {
-    edge_length_squared_.reserve(mesh.edges.size());
-    for (const Edge& edge : mesh.edges)
-        edge_length_squared_.push_back((mesh.rest.col(edge[1]) - mesh.rest.col(edge[0])).squaredNorm());
-}
+ActiveSet::ActiveSet(const CollisionMesh& mesh, const ContactOptions& options)
+    : mesh_(mesh), options_(options), clearances_(mesh, 2 * options.reach()) {}
 
 void ActiveSet::find(const Candidates& candidates, const Positions& x) {
     candidates.find_drift(x, x, drift_);
@@ -35,8 +45,12 @@ void ActiveSet::find(const Candidates& candidates, const Positions& x) {
     chunks_.resize(std::max(chunks_.size(), static_cast<std::size_t>(chunks)));
     parallel_for(chunks, 1, [&](int c) {
         const bool first = c < first_chunks;
-        const int begin = (first ? c : c - first_chunks) * chunk_size;
-        const int end = std::min(begin + chunk_size, first ? first_count : second_count);
+        int begin = (first ? c : c - first_chunks) * chunk_size;
+        int end = std::min(begin + chunk_size, first ? first_count : second_count);
+        if (first) {
+            begin = first_of_point(candidates, begin);
+            end = first_of_point(candidates, end);
+        }
         find_chunk(candidates, first ? StencilKind::point_triangle : StencilKind::edge_edge, begin, end, x,
                    chunks_[static_cast<std::size_t>(c)]);
     });
@@ -56,61 +70,125 @@ void ActiveSet::find(const Candidates& candidates, const Positions& x) {
 void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
                            Chunk& chunk) const {
     chunk.pairs.clear();
+    chunk.near.clear();
     chunk.energy = 0;
     chunk.least_gap = infinity;
     chunk.least_thickness_share = infinity;
     for (int i = begin; i < end; ++i) {
-        const double least_distance = candidates.least_distance(kind, i, drift_);
-        if (least_distance >= options_.reach())
+        const std::optional<NearPair> pair = look_at(candidates, kind, i, x, chunk);
+        if (!pair)
             continue;
         const auto vertices = candidates.vertices(kind, i);
-        const double rest_distance = candidates.rest_distance(kind, i);
-        const PairRange range = pair_range(options_, same_part(vertices), rest_distance);
-        const bool counts_as_gap = !same_part(vertices) || rest_distance >= options_.reach();
-        const double farthest = counts_as_gap ? range.thickness + options_.distance : range.activation;
-        if (least_distance >= farthest)
+        const auto primitives = candidates.primitives(kind, i);
+        if (kind == StencilKind::edge_edge) {
+            add_edges(primitives, vertices, *pair, x, chunk);
             continue;
-        const Stencil stencil = gather(x, vertices);
-        if (squared_sweep_distance(kind, stencil, stencil) >= farthest * farthest)
-            continue;
-        const Separation separation = separate(kind, stencil);
-        if (separation.squared_distance >= farthest * farthest)
-            continue;
-        const double distance = std::sqrt(separation.squared_distance);
-        if (counts_as_gap)
-            chunk.least_gap = std::min(chunk.least_gap, distance - range.thickness);
-        if (range.thickness > 0)
-            chunk.least_thickness_share = std::min(chunk.least_thickness_share, distance / range.thickness);
-        if (distance >= range.activation)
-            continue;
-        const std::array<int, 2> primitives = candidates.primitives(kind, i);
-        const PairParameters pair = parameters(kind, primitives, range);
-        chunk.energy += pair_energy(pair, separation, stencil);
-        chunk.pairs.push_back({kind, primitives, vertices, pair, separation});
+        }
+        if (!chunk.near.empty() && chunk.near.front().vertices[0] != primitives[0])
+            add_places(x, chunk);
+        chunk.near.push_back({primitives[1], vertices, pair->range, pair->separation});
     }
+    add_places(x, chunk);
+}
+
+std::uint8_t ActiveSet::repelling_ends(const std::array<int, 2>& edges, const std::array<int, 4>& vertices) const {
+    std::uint8_t ends = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (const int face : mesh_.connectivity.edge_faces()[static_cast<std::size_t>(edges[i < 2 ? 1 : 0])])
+            if (face >= 0 && !mesh_.has_corner(face, vertices[i]))
+                ends |= static_cast<std::uint8_t>(1U << i);
+    return ends;
+}
+
+std::optional<Separation> ActiveSet::separate_unless_seen(const Candidates& candidates, StencilKind kind, int candidate,
+                                                          const Stencil& stencil) const {
+    if (kind == StencilKind::point_triangle)
+        return separate_point_triangle(stencil);
+    if (const auto facing = separate_facing_edges(stencil))
+        return facing;
+    const std::uint8_t ends =
+        repelling_ends(candidates.primitives(kind, candidate), candidates.vertices(kind, candidate));
+    if (ends == 0b1111)
+        return std::nullopt;
+    const Separation separation = separate_edges(stencil);
+    for (int i = 0; i < 4; ++i)
+        if ((ends >> i & 1) != 0 && squared_distance_end(stencil, i) <= separation.squared_distance)
+            return std::nullopt;
+    return separation;
+}
+
+std::optional<ActiveSet::NearPair> ActiveSet::look_at(const Candidates& candidates, StencilKind kind, int candidate,
+                                                      const Positions& x, Chunk& chunk) const {
+    const double least_distance = candidates.least_distance(kind, candidate, drift_);
+    if (least_distance >= options_.reach())
+        return std::nullopt;
+    const auto vertices = candidates.vertices(kind, candidate);
+    const double apart_at_rest = rest_distance(candidates, kind, candidate);
+    const PairRange range = pair_range(options_, same_part(vertices), apart_at_rest);
+    const bool counts_as_gap = !same_part(vertices) || apart_at_rest >= options_.reach();
+    const double farthest = counts_as_gap ? range.thickness + options_.distance : range.activation;
+    if (least_distance >= farthest)
+        return std::nullopt;
+    const Stencil stencil = gather(x, vertices);
+    if (squared_sweep_distance(kind, stencil, stencil) >= farthest * farthest)
+        return std::nullopt;
+    const std::optional<Separation> separated = separate_unless_seen(candidates, kind, candidate, stencil);
+    if (!separated || separated->squared_distance >= farthest * farthest)
+        return std::nullopt;
+    const Separation& separation = *separated;
+    const double distance = std::sqrt(separation.squared_distance);
+    if (counts_as_gap)
+        chunk.least_gap = std::min(chunk.least_gap, distance - range.thickness);
+    if (range.thickness > 0)
+        chunk.least_thickness_share = std::min(chunk.least_thickness_share, distance / range.thickness);
+    if (distance >= range.activation)
+        return std::nullopt;
+    return NearPair{range, separation};
+}
+
+void ActiveSet::add(const ActivePair& pair, const Positions& x, Chunk& chunk) {
+    chunk.energy += pair_energy(pair.parameters, pair.separation, gather(x, pair.vertices));
+    chunk.pairs.push_back(pair);
+}
+
+void ActiveSet::add_places(const Positions& x, Chunk& chunk) const {
+    if (chunk.near.empty())
+        return;
+    find_nearby_places(mesh_, x, chunk.near, chunk.places);
+    const int point = chunk.near.front().vertices[0];
+    for (const NearPlace& place : chunk.places) {
+        const auto part = static_cast<std::size_t>(mesh_.part[static_cast<std::size_t>(place.vertices[3])]);
+        const double area =
+            std::min(mesh_.vertex_area[static_cast<std::size_t>(point)], mesh_.largest_vertex_area[part]);
+        const double stiffness = place.count * point_share * area * options_.stiffness;
+        add({StencilKind::point_triangle,
+             {point, place.face},
+             place.vertices,
+             parameters(place.range, stiffness),
+             place.separation},
+            x, chunk);
+    }
+    chunk.near.clear();
+}
+
+void ActiveSet::add_edges(const std::array<int, 2>& edges, const std::array<int, 4>& vertices, const NearPair& pair,
+                          const Positions& x, Chunk& chunk) const {
+    const double area = std::min(mesh_.edge_area[static_cast<std::size_t>(edges[0])],
+                                 mesh_.edge_area[static_cast<std::size_t>(edges[1])]);
+    PairParameters weighed = parameters(pair.range, edge_share * area * options_.stiffness);
+    weighed.ends = repelling_ends(edges, vertices);
+    add({StencilKind::edge_edge, edges, vertices, weighed, pair.separation}, x, chunk);
+}
+
+double ActiveSet::rest_distance(const Candidates& candidates, StencilKind kind, int candidate) const {
+    if (same_part(candidates.vertices(kind, candidate)))
+        return candidates.rest_distance(kind, candidate);
+    return clearances_.between(kind, candidates.primitives(kind, candidate));
 }
 
 PairRange ActiveSet::range(StencilKind kind, int candidate, const Candidates& candidates) const {
     return pair_range(options_, same_part(candidates.vertices(kind, candidate)),
-                      candidates.rest_distance(kind, candidate));
-}
-
-PairParameters ActiveSet::parameters(StencilKind kind, const std::array<int, 2>& primitives,
-                                     const PairRange& range) const {
-    const auto first = static_cast<std::size_t>(primitives[0]), second = static_cast<std::size_t>(primitives[1]);
-    PairParameters pair;
-    pair.least_squared = range.least * range.least;
-    pair.activation_squared = range.activation * range.activation;
-    double area = 0;
-    if (kind == StencilKind::point_triangle) {
-        area = point_triangle_share * std::min(mesh_.vertex_area[first], mesh_.face_area[second]);
-    } else {
-        area = edge_edge_share * std::min(mesh_.edge_area[first], mesh_.edge_area[second]);
-        pair.mollifier_threshold =
-            mollifier_threshold_factor * edge_length_squared_[first] * edge_length_squared_[second];
-    }
-    pair.scale = area * options_.stiffness * (range.activation - range.least);
-    return pair;
+                      rest_distance(candidates, kind, candidate));
 }
 
 } // namespace plisse

@@ -3,7 +3,9 @@
 #include <vector>
 
 #include <plisse/contact/candidates.h>
+#include <plisse/contact/clearances.h>
 #include <plisse/contact/contact.h>
+#include <plisse/contact/nearby_places.h>
 #include <plisse/contact/pair_energy.h>
 
 namespace plisse {
@@ -29,7 +31,14 @@ public:
 private:
     struct Chunk {
         std::vector<ActivePair> pairs;
-        double energy = 0, least_gap = 0, least_thickness_share = 0;
+        std::vector<NearTriangle> near;
+        std::vector<NearPlace> places;
+        double energy, least_gap, least_thickness_share;
+    };
+    /// A candidate that is nearer than its activation distance.
+    struct NearPair {
+        PairRange range;
+        Separation separation;
     };
 
     bool same_part(const std::array<int, 4>& stencil) const {
@@ -37,11 +46,25 @@ private:
     }
     void find_chunk(const Candidates& candidates, StencilKind kind, int begin, int end, const Positions& x,
                     Chunk& chunk) const;
-    PairParameters parameters(StencilKind kind, const std::array<int, 2>& primitives, const PairRange& range) const;
+    /// Which a pair's range goes by, m.
+    double rest_distance(const Candidates& candidates, StencilKind kind, int candidate) const;
+    /// The separation of a candidate, unless it is that of a repelling end of an edge.
+    std::optional<Separation> separate_unless_seen(const Candidates& candidates, StencilKind kind, int candidate,
+                                                   const Stencil& stencil) const;
+    /// Looks at one candidate, for gaps too.
+    std::optional<NearPair> look_at(const Candidates& candidates, StencilKind kind, int candidate, const Positions& x,
+                                    Chunk& chunk) const;
+    /// Adds what the point of chunk.near repels.
+    void add_places(const Positions& x, Chunk& chunk) const;
+    void add_edges(const std::array<int, 2>& edges, const std::array<int, 4>& vertices, const NearPair& pair,
+                   const Positions& x, Chunk& chunk) const;
+    /// Ends of two edges that repel as points: those that some face of the other edge does not have as a corner.
+    std::uint8_t repelling_ends(const std::array<int, 2>& edges, const std::array<int, 4>& vertices) const;
+    static void add(const ActivePair& pair, const Positions& x, Chunk& chunk);
 
     const CollisionMesh& mesh_;
     ContactOptions options_;
-    std::vector<double> edge_length_squared_; ///< at rest
+    Clearances clearances_;
     Candidates::Drift drift_;
     std::vector<Chunk> chunks_;
     std::vector<ActivePair> pairs_;

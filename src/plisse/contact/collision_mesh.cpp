@@ -1,11 +1,10 @@
 #include <plisse/contact/collision_mesh.h>
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include <Eigen/Geometry>
-
-#include <plisse/mesh/connectivity.h>
 
 namespace plisse {
 
@@ -14,7 +13,7 @@ CollisionMesh::CollisionMesh(Positions rest_positions, std::vector<Face> mesh_fa
     : rest(std::move(rest_positions)), faces(std::move(mesh_faces)), part(std::move(parts)),
       obstacle(std::move(obstacles)) {
     assert(part.size() == static_cast<std::size_t>(rest.cols()));
-    const Connectivity connectivity(static_cast<int>(rest.cols()), faces);
+    connectivity = Connectivity(static_cast<int>(rest.cols()), faces);
     edges = connectivity.edges();
     vertex_area.assign(part.size(), 0);
     edge_area.assign(edges.size(), 0);
@@ -27,9 +26,13 @@ CollisionMesh::CollisionMesh(Positions rest_positions, std::vector<Face> mesh_fa
             edge_area[static_cast<std::size_t>(connectivity.face_edges()[f][k])] += face_area[f] / 3;
         }
     }
-    for (int v = 0; v < connectivity.vertex_count(); ++v)
+    largest_vertex_area.assign(obstacle.size(), 0);
+    for (int v = 0; v < connectivity.vertex_count(); ++v) {
         if (!connectivity.vertex_faces(v).empty())
             vertices.push_back(v);
+        double& largest = largest_vertex_area[static_cast<std::size_t>(part[static_cast<std::size_t>(v)])];
+        largest = std::max(largest, vertex_area[static_cast<std::size_t>(v)]);
+    }
 }
 
 } // namespace plisse

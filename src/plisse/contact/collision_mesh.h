@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <plisse/base/types.h>
+#include <plisse/mesh/connectivity.h>
 
 namespace plisse {
 
@@ -11,12 +12,19 @@ namespace plisse {
 struct CollisionMesh {
     Positions rest; ///< m; distances at rest decide how far apart a pair begins to repel
     std::vector<Face> faces;
+    Connectivity connectivity;
     std::vector<Edge> edges;            ///< all edges of the faces, lower vertex first, sorted
     std::vector<int> vertices;          ///< vertices that some face uses, ascending
     std::vector<int> part;              ///< per vertex: number of its body or obstacle
     std::vector<std::uint8_t> obstacle; ///< per part: 1 for an obstacle (pairs of two obstacles never interact)
     std::vector<double> vertex_area, edge_area, face_area; ///< m^2 at rest: thirds of the adjacent faces' areas; per
                                                            ///< vertex, per edge, per face
+    std::vector<double> largest_vertex_area;               ///< per part
+
+    bool has_corner(int face, int vertex) const {
+        const auto& [a, b, c] = faces[static_cast<std::size_t>(face)];
+        return a == vertex || b == vertex || c == vertex;
+    }
 
     CollisionMesh() = default;
     CollisionMesh(Positions rest, std::vector<Face> faces, std::vector<int> part, std::vector<std::uint8_t> obstacle);

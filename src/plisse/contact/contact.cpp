@@ -155,7 +155,7 @@ const std::vector<Edge>& Contact::coupled_pairs(const Positions& x) {
     auto& coupled = state_->coupled_pairs;
     coupled.clear();
     for (const ActivePair& pair : state_->active.pairs()) {
-        const std::size_t first = pair.parameters.mollifier_threshold > 0 ? 2 : 1; // corners of the first primitive
+        const std::size_t first = pair.kind == StencilKind::edge_edge ? 2 : 1; // corners of the first primitive
         for (std::size_t i = 0; i < first; ++i)
             for (std::size_t j = first; j < 4; ++j)
                 coupled.push_back({pair.vertices[i], pair.vertices[j]});

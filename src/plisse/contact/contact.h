@@ -12,7 +12,8 @@
 
 namespace plisse {
 
-/// A pair of primitives nearer than its activation distance.
+/// A pair of primitives nearer than its activation distance. Where a point meets several faces, the pairs are the
+/// places of find_nearby_places(): the separation may then be that of an edge or a vertex of the face.
 struct ActivePair {
     StencilKind kind;
     std::array<int, 2> primitives; ///< vertex and face, or edge and edge

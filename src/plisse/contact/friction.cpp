@@ -26,6 +26,27 @@ Smoothed smoothed(double y, double slip) {
     return {y * share * (1 - share / 3), (2 - share) / slip, 2 * (1 - share) / slip};
 }
 
+bool of_one_point(const ActivePair& a, const ActivePair& b) {
+    return a.kind == StencilKind::point_triangle && b.kind == a.kind && a.primitives[0] == b.primitives[0];
+}
+
+/// How hard pairs press, N. What is counted off at a point is shared out over its other pairs, so that a vertex in the
+/// fold of two faces rubs with the force that it presses with.
+std::vector<double> normal_forces(std::span<const ActivePair> active, const Positions& x) {
+    std::vector<double> forces;
+    for (const ActivePair& pair : active)
+        forces.push_back(pair_normal_force(pair.parameters, pair.separation, gather(x, pair.vertices)));
+    for (std::size_t begin = 0, end = 0; begin < active.size(); begin = end) {
+        double pressing = 0, counted_off = 0;
+        for (end = begin; end == begin || (end < active.size() && of_one_point(active[begin], active[end])); ++end)
+            (forces[end] > 0 ? pressing : counted_off) += forces[end];
+        const double left = pressing > 0 ? std::max(0.0, 1 + counted_off / pressing) : 0;
+        for (std::size_t p = begin; p < end; ++p)
+            forces[p] = left * std::max(0.0, forces[p]);
+    }
+    return forces;
+}
+
 bool comes_before(const RubbingPair& a, const RubbingPair& b) {
     return std::tie(a.kind, a.primitives) < std::tie(b.kind, b.primitives);
 }
@@ -39,6 +60,11 @@ Friction::Friction(const CollisionMesh& mesh, const FrictionOptions& options)
 double Friction::coefficient(const ActivePair& pair) const {
     const int a = mesh_.part[at(pair.vertices[0])], b = mesh_.part[at(pair.vertices[3])];
     return options_.coefficients[at(a) * mesh_.obstacle.size() + at(b)];
+}
+
+/// Pairs that are counted off pull; friction does not.
+bool Friction::rubs(const ActivePair& pair) const {
+    return pair.parameters.scale > 0 && coefficient(pair) > 0;
 }
 
 /// What a pair has given up so far.
@@ -59,8 +85,6 @@ Friction::Contact Friction::contact(const ActivePair& pair, const Positions& x) 
     contact.normal = pair.separation.offset.normalized();
     contact.slipped = slipped(pair, x);
     contact.origin = gather(memory_.reference, pair.vertices) * contact.weights + contact.slipped;
-    contact.limit =
-        grip_ * coefficient(pair) * pair_normal_force(pair.parameters, pair.separation, gather(x, pair.vertices));
     return contact;
 }
 
@@ -81,12 +105,14 @@ void Friction::lag(std::span<const ActivePair> active, const Positions& x, doubl
         return;
     if (memory_.reference.cols() == 0)
         memory_.reference = x;
-    for (const ActivePair& pair : active)
-        if (coefficient(pair) > 0) {
-            contacts_.push_back(contact(pair, x));
-            contacts_.back().limit *= share;
-            contacts_.back().share = share;
-        }
+    const std::vector<double> forces = normal_forces(active, x);
+    for (std::size_t p = 0; p < active.size(); ++p) {
+        if (!rubs(active[p]))
+            continue;
+        contacts_.push_back(contact(active[p], x));
+        contacts_.back().limit = share * grip_ * coefficient(active[p]) * forces[p];
+        contacts_.back().share = share;
+    }
 }
 
 void Friction::remember(std::span<const ActivePair> active, const Positions& x) {
@@ -94,7 +120,7 @@ void Friction::remember(std::span<const ActivePair> active, const Positions& x) 
         return;
     std::vector<RubbingPair> pairs;
     for (const ActivePair& pair : active) {
-        if (coefficient(pair) == 0)
+        if (!rubs(pair))
             continue;
         const Contact now = contact(pair, x);
         const Vec3 u = sliding(now, x);

@@ -76,6 +76,7 @@ private:
         double share = 1; ///< of the mixture
     };
     double coefficient(const ActivePair& pair) const;
+    bool rubs(const ActivePair& pair) const;
     Contact contact(const ActivePair& pair, const Positions& x) const;
     Vec3 slipped(const ActivePair& pair, const Positions& x) const;
     Vec3 sliding(const Contact& contact, const Positions& x) const;

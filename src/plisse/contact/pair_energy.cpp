@@ -16,10 +16,6 @@ Barrier scaled_barrier(const PairParameters& p, double squared_distance) {
     return {p.scale * b.value, p.scale * b.first / range, p.scale * b.second / (range * range)};
 }
 
-Mollifier mollifier_of(const PairParameters& p, const Stencil& x) {
-    return p.mollifier_threshold > 0 ? mollify(cross_squared(x), p.mollifier_threshold) : Mollifier();
-}
-
 /// d2E/dd2 of the distance d, for E a function of D = d^2.
 double curvature_in_distance(const Barrier& b, double squared_distance) {
     return std::max(0.0, 4 * b.second * squared_distance + 2 * b.first);
@@ -86,50 +82,64 @@ Mat12 translation_free_positive_part(const Mat12& hessian) {
     return result;
 }
 
-Mat12 mollified_hessian(const Mollifier& m, const Barrier& b, const Separation& separation, const Stencil& x) {
-    const Vec12 by_cross = cross_squared_gradient(x), by_distance = squared_distance_gradient(separation);
-    const Mat12 mixed = by_cross * by_distance.transpose();
-    return b.value * (m.second * by_cross * by_cross.transpose() + m.first * cross_squared_hessian(x)) +
-           m.first * b.first * (mixed + mixed.transpose()) +
-           m.value *
-               (b.second * by_distance * by_distance.transpose() + b.first * squared_distance_hessian(separation));
+/// Of the energy without mollifier.
+Mat12 barrier_hessian(const Separation& separation, const Barrier& b) {
+    const Vec12 by_distance = squared_distance_gradient(separation);
+    return b.second * by_distance * by_distance.transpose() + b.first * squared_distance_hessian(separation);
+}
+
+Mat12 mollified_hessian(const EdgeMollifier& mollifier, const Separation& separation, const Barrier& b) {
+    const Mat12 mixed = b.first * mollifier.gradient() * squared_distance_gradient(separation).transpose();
+    return b.value * mollifier.hessian() + mixed + mixed.transpose() +
+           mollifier.value() * barrier_hessian(separation, b);
+}
+
+double mollifier_value(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
+    return parameters.ends != 0 ? EdgeMollifier(separation, x, parameters.ends).value() : 1;
 }
 
 } // namespace
 
 double pair_energy(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    return mollifier_of(parameters, x).value * scaled_barrier(parameters, separation.squared_distance).value;
+    return mollifier_value(parameters, separation, x) * scaled_barrier(parameters, separation.squared_distance).value;
 }
 
 double pair_normal_force(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    return -2 * std::sqrt(separation.squared_distance) * mollifier_of(parameters, x).value *
-           scaled_barrier(parameters, separation.squared_distance).first;
+    const Vec12 gradient = pair_gradient(parameters, separation, x);
+    Vec3 on_first = gradient.head<3>();
+    if (parameters.ends != 0)
+        on_first += gradient.segment<3>(3);
+    return -on_first.dot(separation.offset.normalized());
 }
 
 Vec12 pair_gradient(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    const Mollifier m = mollifier_of(parameters, x);
-    Vec12 gradient = m.value * b.first * squared_distance_gradient(separation);
-    if (m.first != 0)
-        gradient += m.first * b.value * cross_squared_gradient(x);
-    return gradient;
+    const Vec12 by_distance = b.first * squared_distance_gradient(separation);
+    if (parameters.ends == 0)
+        return by_distance;
+    const EdgeMollifier mollifier(separation, x, parameters.ends);
+    return mollifier.value() * by_distance + b.value * mollifier.gradient();
 }
 
 Mat12 pair_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    return mollified_hessian(mollifier_of(parameters, x), scaled_barrier(parameters, separation.squared_distance),
-                             separation, x);
+    const Barrier b = scaled_barrier(parameters, separation.squared_distance);
+    if (parameters.ends == 0)
+        return barrier_hessian(separation, b);
+    return mollified_hessian(EdgeMollifier(separation, x, parameters.ends), separation, b);
 }
 
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    const Mollifier m = mollifier_of(parameters, x);
-    if (m.first > 0)
-        return translation_free_positive_part(mollified_hessian(m, b, separation, x));
+    if (parameters.scale < 0)
+        return translation_free_positive_part(barrier_hessian(separation, b));
+    if (parameters.ends != 0)
+        if (const EdgeMollifier mollifier(separation, x, parameters.ends); !mollifier.is_one())
+            return translation_free_positive_part(mollified_hessian(mollifier, separation, b));
     return projected_barrier(separation, b);
 }
 
 Mat12 pair_gauss_newton_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    const double m = mollifier_of(parameters, x).value;
+    const double m = mollifier_value(parameters, separation, x);
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
     return rank_one(m * curvature_in_distance(b, separation.squared_distance), separation.weights,
                     separation.offset.normalized());

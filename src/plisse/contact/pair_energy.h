@@ -6,17 +6,18 @@ namespace plisse {
 
 /// What one pair of primitives weighs in the contact energy.
 struct PairParameters {
-    double scale = 0;               ///< area weight * stiffness * activation distance, J
-    double activation_squared = 0;  ///< Dhat, m^2
-    double mollifier_threshold = 0; ///< of mollify(), m^4; 0 for point-triangle pairs
-    double least_squared = 0;       ///< D0 of the distance that is kept, m^2
+    double scale = 0;              ///< area weight * stiffness * activation distance, J; below 0 for pairs counted off
+    double activation_squared = 0; ///< Dhat, m^2
+    double least_squared = 0;      ///< D0 of the distance that is kept, m^2
+    std::uint8_t ends = 0;         ///< of two edges, the ends that the mollifier goes by, one bit each; 0 for a point
 };
 
-/// Energy of one pair, E = scale * m(c) * b((D - D0) / (Dhat - D0)), with the squared distance D of `separation` (of
-/// the stencil x), the mollifier m and the barrier b (C-IPC, Li et al. 2021, section 4.1). J; infinite for D <= D0.
+/// Energy of one pair, E = scale * m * b((D - D0) / (Dhat - D0)), with the squared distance D of `separation` (of the
+/// stencil x), the mollifier m of two edges and the barrier b (after C-IPC, Li et al. 2021, section 4.1). J; infinite
+/// for D <= D0.
 double pair_energy(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
-/// How hard the two primitives press each other apart, -dE/dd with the distance d of `separation`. N.
+/// How hard the two primitives press each other apart along the line of their closest points, N.
 double pair_normal_force(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
 /// dE/dX in the order of the stencil, N.
@@ -30,7 +31,7 @@ Mat12 pair_hessian(const PairParameters& parameters, const Separation& separatio
 ///   E''(d) (w x n)(w x n)^T + c sum_k [d (w x t_k)(v_k x n)^T + its transpose + d^2 (v_k x n)(v_k x n)^T]
 ///   - c (w x m)(w x m)^T summed over the directions m across n and the tangents,      c = -2 dE/dD >= 0.
 /// Each term is projected by itself: the first is positive, the last negative, and those of the sum are 2x2 matrices.
-/// With the mollifier the nearest semi-definite matrix is found in the nine dimensions across translations.
+/// With a mollifier below 1, or a scale below 0, it is the nearest semi-definite matrix.
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
 /// The part of d2E/dX2 that is left when the mollifier and the direction between the closest points stand still:

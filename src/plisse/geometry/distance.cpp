@@ -21,6 +21,7 @@ struct Border {
     double side;
 };
 
+/// Border k of a triangle starts at its corner k; border i of two edges has their point i.
 constexpr std::array<Border, 3> triangle_borders = {{{0, 1, 2, -1}, {0, 2, 3, -1}, {0, 3, 1, -1}}};
 constexpr std::array<Border, 4> edge_borders = {{{0, 2, 3, -1}, {1, 2, 3, -1}, {2, 0, 1, 1}, {3, 0, 1, 1}}};
 
@@ -74,6 +75,10 @@ Separation separate_border(const Stencil& y, const Border& border, double parame
     }
     complete(s, y);
     return s;
+}
+
+Separation separate_border(const Stencil& y, const Border& border) {
+    return separate_border(y, border, closest_parameter(y.col(border.point), y.col(border.start), y.col(border.end)));
 }
 
 /// The border whose closest points are nearest, and where.
@@ -148,7 +153,7 @@ Separation separate_points(const Vec3& p, const Vec3& q) {
 Separation separate_point_edge(const Vec3& p, const Vec3& e0, const Vec3& e1) {
     Stencil y;
     y << Vec3::Zero(), e0 - p, e1 - p, Vec3::Zero();
-    return separate_border(y, triangle_borders[0], closest_parameter(y.col(0), y.col(1), y.col(2)));
+    return separate_border(y, triangle_borders[0]);
 }
 
 Separation separate_point_triangle(const Stencil& x) {
@@ -167,10 +172,16 @@ Separation separate_point_triangle(const Stencil& x) {
 }
 
 Separation separate_edges(const Stencil& x) {
+    if (const auto facing = separate_facing_edges(x))
+        return *facing;
+    return separate_nearest_border(relative(x), edge_borders);
+}
+
+std::optional<Separation> separate_facing_edges(const Stencil& x) {
     const Stencil y = relative(x);
     const Facing facing = face_edges(y);
     if (!facing.inside)
-        return separate_nearest_border(y, edge_borders);
+        return std::nullopt;
     Separation s;
     s.weights << 1 - facing.first, facing.first, -(1 - facing.second), -facing.second;
     s.slides.col(0) << -1, 1, 0, 0;
@@ -179,6 +190,18 @@ Separation separate_edges(const Stencil& x) {
     s.corners = 0b1111;
     complete(s, y);
     return s;
+}
+
+Separation separate_from_border(const Stencil& x, int k) {
+    return separate_border(relative(x), triangle_borders[static_cast<std::size_t>(k)]);
+}
+
+Separation separate_from_corner(const Stencil& x, int k) {
+    return separate_border(relative(x), triangle_borders[static_cast<std::size_t>(k)], 0);
+}
+
+Separation separate_end(const Stencil& x, int i) {
+    return separate_border(relative(x), edge_borders[static_cast<std::size_t>(i)]);
 }
 
 double squared_distance_point_triangle(const Stencil& x) {
@@ -191,6 +214,12 @@ double squared_distance_edges(const Stencil& x) {
     const Stencil y = relative(x);
     const Facing facing = face_edges(y);
     return facing.inside ? facing.height_squared : find_nearest_border(y, edge_borders).squared_distance;
+}
+
+double squared_distance_end(const Stencil& x, int i) {
+    const Border& border = edge_borders[static_cast<std::size_t>(i)];
+    const Vec3 p = x.col(border.point), start = x.col(border.start), end = x.col(border.end);
+    return (p - start - closest_parameter(p, start, end) * (end - start)).squaredNorm();
 }
 
 Vec12 squared_distance_gradient(const Separation& separation) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <plisse/base/types.h>
 
@@ -40,10 +41,20 @@ Separation separate_point_edge(const Vec3& p, const Vec3& e0, const Vec3& e1);
 Separation separate_point_triangle(const Stencil& x);
 /// Any edges: parallel, collinear and of no length too.
 Separation separate_edges(const Stencil& x);
+/// The same where the closest points lie inside both edges, else nothing, in half the time.
+std::optional<Separation> separate_facing_edges(const Stencil& x);
+
+/// Of a point-triangle stencil, the point and the triangle's border from corner k to the next alone; k in {0, 1, 2}.
+Separation separate_from_border(const Stencil& x, int k);
+/// Of a point-triangle stencil, the point and the triangle's corner k alone.
+Separation separate_from_corner(const Stencil& x, int k);
+/// Of an edge-edge stencil, point i alone and the whole of the edge that it is not on.
+Separation separate_end(const Stencil& x, int i);
 
 /// D alone, for less than half the time.
 double squared_distance_point_triangle(const Stencil& x);
 double squared_distance_edges(const Stencil& x);
+double squared_distance_end(const Stencil& x, int i); ///< of separate_end
 
 /// dD/dX in the order of the stencil, m. D is the least of |X w|^2 over the slides, so its gradient is that at fixed w.
 Vec12 squared_distance_gradient(const Separation& separation);

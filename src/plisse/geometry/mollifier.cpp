@@ -1,47 +1,66 @@
 #include <plisse/geometry/mollifier.h>
 
-#include <Eigen/Geometry>
-
 namespace plisse {
 
-Mollifier mollify(double cross_squared, double threshold) {
-    if (!(cross_squared < threshold))
-        return {};
-    const double share = cross_squared / threshold;
-    return {(2 - share) * share, 2 * (1 - share) / threshold, -2 / (threshold * threshold)};
+namespace {
+
+constexpr double first_ratio = 0.25; // m is 1 below
+
+} // namespace
+
+EdgeMollifier::EdgeMollifier(const Separation& s, const Stencil& x, std::uint8_t ends) : separation_(s) {
+    for (int i = 0; i < 4; ++i) {
+        if ((ends >> i & 1) == 0 || s.squared_distance <= first_ratio * squared_distance_end(x, i))
+            continue;
+        const Separation end = separate_end(x, i);
+        const double ratio = s.squared_distance / end.squared_distance;
+        const double slope = 1 / (1 - first_ratio), q = std::min(1.0, (ratio - first_ratio) * slope);
+        ends_[static_cast<std::size_t>(count_++)] = {end, ratio, 1 - q * q * q, -3 * q * q * slope,
+                                                     -6 * q * slope * slope};
+        value_ *= 1 - q * q * q;
+    }
 }
 
-double cross_squared(const Stencil& x) {
-    const Vec3 u = x.col(1) - x.col(0), v = x.col(3) - x.col(2);
-    return u.cross(v).squaredNorm();
+/// Of the ends' factors, save those of ends i and j.
+double EdgeMollifier::product_without(int i, int j) const {
+    double product = 1;
+    for (int k = 0; k < count_; ++k)
+        if (k != i && k != j)
+            product *= ends_[static_cast<std::size_t>(k)].value;
+    return product;
 }
 
-Vec12 cross_squared_gradient(const Stencil& x) {
-    const Vec3 u = x.col(1) - x.col(0), v = x.col(3) - x.col(2);
-    const Vec3 n = u.cross(v);
-    const Vec3 by_u = 2 * v.cross(n), by_v = 2 * n.cross(u);
-    Vec12 gradient;
-    gradient.segment<3>(0) = -by_u;
-    gradient.segment<3>(3) = by_u;
-    gradient.segment<3>(6) = -by_v;
-    gradient.segment<3>(9) = by_v;
+Vec12 EdgeMollifier::ratio_gradient(const End& end) const {
+    return (squared_distance_gradient(separation_) - end.ratio * squared_distance_gradient(end.separation)) /
+           end.separation.squared_distance;
+}
+
+Vec12 EdgeMollifier::gradient() const {
+    Vec12 gradient = Vec12::Zero();
+    for (int i = 0; i < count_; ++i) {
+        const End& end = ends_[static_cast<std::size_t>(i)];
+        gradient += product_without(i, i) * end.first * ratio_gradient(end);
+    }
     return gradient;
 }
 
-Mat12 cross_squared_hessian(const Stencil& x) {
-    const Vec3 u = x.col(1) - x.col(0), v = x.col(3) - x.col(2);
-    const Mat3 uu = 2 * (v.squaredNorm() * Mat3::Identity() - v * v.transpose());
-    const Mat3 vv = 2 * (u.squaredNorm() * Mat3::Identity() - u * u.transpose());
-    const Mat3 uv = 4 * u * v.transpose() - 2 * v * u.transpose() - 2 * u.dot(v) * Mat3::Identity();
-    Mat12 hessian;
-    for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j) {
-            const double sign = i == j ? 1 : -1;
-            hessian.block<3, 3>(3 * i, 3 * j) = sign * uu;
-            hessian.block<3, 3>(3 * i + 6, 3 * j + 6) = sign * vv;
-            hessian.block<3, 3>(3 * i, 3 * j + 6) = sign * uv;
-            hessian.block<3, 3>(3 * j + 6, 3 * i) = sign * uv.transpose();
+Mat12 EdgeMollifier::hessian() const {
+    Mat12 hessian = Mat12::Zero();
+    for (int i = 0; i < count_; ++i) {
+        const End& end = ends_[static_cast<std::size_t>(i)];
+        const Vec12 by_ratio = ratio_gradient(end);
+        // r D_i = D, differentiated twice.
+        const Mat12 mixed = by_ratio * squared_distance_gradient(end.separation).transpose();
+        const Mat12 ratio_hessian = (squared_distance_hessian(separation_) -
+                                     end.ratio * squared_distance_hessian(end.separation) - mixed - mixed.transpose()) /
+                                    end.separation.squared_distance;
+        hessian += product_without(i, i) * (end.first * ratio_hessian + end.second * by_ratio * by_ratio.transpose());
+        for (int j = 0; j < i; ++j) {
+            const End& other = ends_[static_cast<std::size_t>(j)];
+            const Mat12 both = by_ratio * ratio_gradient(other).transpose();
+            hessian += product_without(i, j) * end.first * other.first * (both + both.transpose());
         }
+    }
     return hessian;
 }
 

@@ -4,20 +4,37 @@
 
 namespace plisse {
 
-/// Takes the kink out of the distance of two edges where they turn parallel (IPC, Li et al. 2020, section 5.2). With
-/// edges u = a1 - a0 and v = b1 - b0, c = |u x v|^2 and a threshold e on it:
-///   m(c) = (2 - c/e) c/e below e, else 1;  e = 1e-3 |u|^2 |v|^2 of the edges at rest.
-struct Mollifier {
-    double value = 1, first = 0, second = 0; ///< m, dm/dc, d2m/dc2
+/// Takes from the energy of two edges what vertices and faces see too: where the edges cross near the end of one of
+/// them, the point there repels by itself, and parallel edges have no closest points of their own. With the squared
+/// distances D of the edges and D_i of each end i and the other edge,
+///   m = prod_i (1 - q_i^3),   q_i = max(0, r_i - 1/4) / (3/4),   r_i = D / D_i in [0, 1].
+/// m is 1 where all ends are twice as far away as the edges are, and runs to 0 without a kink where an end becomes the
+/// nearest point, as on edges that turn parallel: the distance's own kinks lie where m is 0. An energy that tends to
+/// infinity as D does to 0 still does so times m, unless a D_i tends to 0 too.
+class EdgeMollifier {
+public:
+    /// s = separate_edges(x), and must outlive the object. ends: bit i is set for the ends that count.
+    EdgeMollifier(const Separation& s, const Stencil& x, std::uint8_t ends = 0b1111);
+
+    double value() const { return value_; } ///< m
+    bool is_one() const { return count_ == 0; }
+    Vec12 gradient() const; ///< dm/dX, 1/m
+    Mat12 hessian() const;  ///< d2m/dX2, 1/m^2
+
+private:
+    /// An end that lowers m.
+    struct End {
+        Separation separation;
+        double ratio = 0;                        ///< r_i
+        double value = 0, first = 0, second = 0; ///< 1 - q_i^3 and its derivatives by r_i
+    };
+    double product_without(int i, int j) const;
+    Vec12 ratio_gradient(const End& end) const;
+
+    const Separation& separation_;
+    std::array<End, 4> ends_;
+    int count_ = 0;
+    double value_ = 1;
 };
-
-inline constexpr double mollifier_threshold_factor = 1e-3;
-
-Mollifier mollify(double cross_squared, double threshold);
-
-/// c = |u x v|^2 of an edge-edge stencil, m^4.
-double cross_squared(const Stencil& x);
-Vec12 cross_squared_gradient(const Stencil& x);
-Mat12 cross_squared_hessian(const Stencil& x);
 
 } // namespace plisse

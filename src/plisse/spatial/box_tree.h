@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -130,7 +131,8 @@ public:
             tree.leaf_count(), most, [&](int leaf, const auto& visit) { tree.visit_pairs_from(leaf, visit); }, accept);
     }
 
-    /// Pairs {i, j} of an item of `tree` and one of `other`. Otherwise as find_within.
+    /// Pairs {i, j} of an item of `tree` and one of `other`, those of one item i next to each other with ascending j.
+    /// Otherwise as find_within.
     template <typename Accept>
     bool find_between(const BoxTree& tree, const BoxTree& other, const Accept& accept, std::size_t most) {
         return find(
@@ -156,6 +158,7 @@ private:
                     if (accept(i, j))
                         chunk.push_back({i, j});
                 });
+                std::sort(chunk.begin() + static_cast<std::ptrdiff_t>(before), chunk.end());
                 total.fetch_add(chunk.size() - before, std::memory_order_relaxed);
             }
         });
