@@ -10,8 +10,9 @@ namespace {
 constexpr int chunk_size = 512;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Between two parallel sheets of like triangles the points weigh twice their sheets' area A, from both sides, and there
-/// are about 2.4 A / edge area crossing edges: with these shares the pressure comes to that of one barrier per area.
+/// Between two parallel sheets of like triangles the points weigh twice their sheets' area A, from both sides, and
+/// there are about 2.4 A / edge area crossing edges: with these shares the pressure comes to that of one barrier per
+/// area.
 constexpr double point_share = 0.35, edge_share = 0.15;
 
 /// Candidates of one point follow each other: moves on from `candidate` to the first of its point, or to the end.

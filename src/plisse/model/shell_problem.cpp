@@ -147,15 +147,26 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
         FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model)});
     build_system(layout.prescribed);
 
-    double elastic_scale = 0;
-    for (const Body& body : model.bodies)
-        elastic_scale = std::max(elastic_scale, body.material.youngs_modulus * body.material.thickness);
-    const double diagonal = bounding_box(mesh.rest).diagonal();
-    force_round_off_ = 1e-12 * elastic_scale * diagonal;
-    value_round_off_ = 1e-16 * elastic_scale * diagonal * diagonal;
+    estimate_round_off();
 }
 
 ShellProblem::~ShellProblem() = default;
+
+/// Of elastic energies. It goes by the bodies' own size: an obstacle may be as large as a landscape.
+void ShellProblem::estimate_round_off() {
+    const HierarchyLevel& mesh = discretization_.mesh(level_);
+    const std::vector<Body>& bodies = discretization_.model().bodies;
+    std::vector<Box> boxes(bodies.size());
+    for (std::size_t v = 0; v < mesh.part.size(); ++v)
+        if (const auto part = at(mesh.part[v]); part < boxes.size())
+            boxes[part].include(mesh.rest.col(static_cast<Eigen::Index>(v)));
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const double stiffness = bodies[b].material.youngs_modulus * bodies[b].material.thickness;
+        const double diagonal = boxes[b].diagonal();
+        force_round_off_ = std::max(force_round_off_, 1e-12 * stiffness * diagonal);
+        value_round_off_ = std::max(value_round_off_, 1e-16 * stiffness * diagonal * diagonal);
+    }
+}
 
 bool ShellProblem::uses_galerkin() const {
     return discretization_.model().solve.curvature != Curvature::own;

@@ -97,6 +97,7 @@ private:
     const Positions& level_positions(const VecX& x);
     Positions pull_back(const VecX& x, const Positions& carried_gradient);
     bool uses_galerkin() const;
+    void estimate_round_off();
     void build_system(const std::vector<std::uint8_t>& prescribed);
     void set_step(const Positions& current, const Positions& anchor, double t, double h);
     void begin_friction(const Positions& current, const FrictionMemory& memory, bool is_first);
