@@ -1,6 +1,7 @@
 #include <plisse/drive/patch_relaxation.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <plisse/contact/contact.h>
@@ -18,7 +19,7 @@ std::size_t at(int index) {
 
 /// The faces in reach of a patch in numbers of their own.
 struct LocalMesh {
-    Box room;             ///< where free vertices may go: all faces within reach of it are there
+    double room = 0;      ///< m: how far a free vertex may go along each axis; all faces in reach of it there are known
     std::vector<int> ids; ///< hierarchy id of each local vertex, ascending
     std::vector<Face> faces;
     std::vector<Face> elastic_faces; ///< those with a free corner
@@ -29,16 +30,26 @@ struct LocalMesh {
     int local(int id) const { return static_cast<int>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin()); }
 };
 
-LocalMesh local_mesh(const ExpandingMesh& mesh, std::span<const int> free, double reach) {
-    Box box;
+/// The faces that those of the free vertices may come within reach of, ascending.
+std::vector<int> faces_near(const ExpandingMesh& mesh, std::span<const int> free, double beyond) {
+    std::vector<int> near, of_one;
     for (int v : free)
-        for (int f : mesh.faces().vertex_faces(v))
+        for (int f : mesh.faces().vertex_faces(v)) {
+            Box box;
             for (int w : mesh.faces().face(f))
                 box.include(mesh.position(w));
+            mesh.grid().query(box.inflated(beyond), of_one);
+            near.insert(near.end(), of_one.begin(), of_one.end());
+        }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    return near;
+}
+
+LocalMesh local_mesh(const ExpandingMesh& mesh, std::span<const int> free, double reach) {
     LocalMesh local;
-    local.room = box.inflated(std::max(reach, 0.25 * box.diagonal()));
-    std::vector<int> near;
-    mesh.grid().query(local.room.inflated(reach), near);
+    local.room = 2 * reach;
+    const std::vector<int> near = faces_near(mesh, free, local.room + reach);
     for (int f : near)
         for (int v : mesh.faces().face(f))
             local.ids.push_back(v);
@@ -122,8 +133,8 @@ public:
     double max_step(const VecX& x, const VecX& d) override {
         double alpha = 1;
         for (Eigen::Index i = 0; i < d.size(); ++i)
-            if (const double wall = d[i] > 0 ? room_.high[i % 3] : room_.low[i % 3]; d[i] != 0)
-                alpha = std::min(alpha, std::max(0.0, (wall - x[i]) / d[i]));
+            if (d[i] != 0)
+                alpha = std::min(alpha, std::max(0.0, (anchor_[i] + std::copysign(room_, d[i]) - x[i]) / d[i]));
         return alpha * contact_->max_step(as_positions(x), as_positions(VecX(alpha * d)));
     }
 
@@ -141,7 +152,7 @@ private:
     ContactOptions options_;
     std::unique_ptr<Contact> contact_;
     NewtonSystem system_;
-    Box room_;
+    double room_;
     VecX targets_, anchor_;
     double inertia_ = 0;
 };
