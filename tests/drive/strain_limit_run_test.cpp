@@ -336,4 +336,24 @@ TEST(LimitRelaxation, SaysWhatCannotBeBroughtWithin) {
     EXPECT_TRUE(intersecting_pairs(x, level.faces, of_ball).empty());
 }
 
+/// A cloth of limited stretch and of some thickness pulled down over a ball by five times gravity, its crown held.
+TEST(StrainLimitRun, KeepsTheContactThicknessToo) {
+    Model model = small_drape();
+    model.bodies[0].material.strain_limit = 1.02;
+    model.contact.thickness = 2e-3;
+    model.gravity = Track<Vec3>(Vec3(0, -49, 0));
+    StretchWitness witness;
+    Context context;
+    const RunResult result = run(model, {}, witness, context);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_EQ(result.report.intersecting_pairs, 0);
+    ASSERT_EQ(witness.most.size(), 3U);
+    for (const auto& [level, stretch] : witness.most)
+        EXPECT_LT(stretch, 1.02) << level;
+    for (const LevelReport& level : result.report.levels)
+        EXPECT_GT(level.min_gap, 0); // beyond the thickness
+    EXPECT_GT(result.report.levels.back().energy.strain_limit, 0);
+    EXPECT_GT(result.report.levels.back().energy.contact, 0);
+}
+
 } // namespace
