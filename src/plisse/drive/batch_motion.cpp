@@ -144,6 +144,7 @@ int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const
         const auto found = remaining.find(v);
         return found == remaining.end() ? Vec3::Zero() : found->second;
     };
+    constexpr double same = 1e-6;
     int stopped = 0;
     std::vector<double> limits(cluster.pairs.size()), references;
     for (const MovingPair& pair : cluster.pairs) { // what is near at rest may come as near again
@@ -159,8 +160,10 @@ int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const
             if (d.isZero(0))
                 continue;
             const Stencil x = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.position(v); });
-            const double distance = std::sqrt(separate(pair.kind, x).squared_distance);
-            limits[p] = safe_step(pair.kind, x, d, kept_gap(distance, references[p]));
+            const double distance = std::sqrt(squared_distance(pair.kind, x));
+            // Only the least limit counts, and those that are equal to it within rounding.
+            const double kept = kept_gap(distance, references[p]), end = std::min(1.0, least * (1 + 2 * same));
+            limits[p] = keeps_apart(pair.kind, x, d, distance, kept, end) ? end : safe_step(pair.kind, x, d, kept, end);
             least = std::min(least, limits[p]);
         }
         for (auto& [v, d] : remaining) {
@@ -170,7 +173,7 @@ int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const
         if (least == 1)
             return stopped;
         for (std::size_t p = 0; p < cluster.pairs.size(); ++p)
-            if (limits[p] <= least * (1 + 1e-6))
+            if (limits[p] <= least * (1 + same))
                 for (int v : cluster.pairs[p].vertices)
                     if (const auto found = remaining.find(v); found != remaining.end()) {
                         remaining.erase(found);
