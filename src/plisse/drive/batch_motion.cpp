@@ -133,54 +133,113 @@ double kept_gap(double distance, double reference_gap) {
     return std::min(0.9 * distance, std::max(0.1 * distance, 0.5 * reference_gap));
 }
 
-/// Advances one cluster until every vertex has arrived or is stopped; returns how many were stopped.
-int advance(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const Collapse*>& batch,
-            double reference_gap) {
-    std::unordered_map<int, Vec3> remaining;
-    for (int r : cluster.records)
-        for (int v : {batch[at(r)]->i, batch[at(r)]->j})
-            remaining[v] = mesh.targets().col(v) - mesh.position(v);
-    const auto displacement = [&](int v) -> Vec3 {
-        const auto found = remaining.find(v);
-        return found == remaining.end() ? Vec3::Zero() : found->second;
-    };
-    constexpr double same = 1e-6;
-    int stopped = 0;
-    std::vector<double> limits(cluster.pairs.size()), references;
-    for (const MovingPair& pair : cluster.pairs) { // what is near at rest may come as near again
-        const Stencil rest = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.rest().col(v); });
-        references.push_back(std::min(reference_gap, std::sqrt(squared_distance(pair.kind, rest))));
+/// Moves the vertices of one cluster.
+class ClusterMotion {
+public:
+    ClusterMotion(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const Collapse*>& batch,
+                  double reference_gap)
+        : mesh_(mesh) {
+        std::unordered_map<int, int> mover_of;
+        for (int r : cluster.records)
+            for (int v : {batch[at(r)]->i, batch[at(r)]->j}) {
+                mover_of[v] = static_cast<int>(movers_.size());
+                movers_.push_back(v);
+                remaining_.emplace_back(mesh.targets().col(v) - mesh.position(v));
+            }
+        for (const MovingPair& pair : cluster.pairs) {
+            Motion motion{pair, {}, 0, 0, 1};
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto found = mover_of.find(pair.vertices[k]);
+                motion.movers[k] = found == mover_of.end() ? -1 : found->second;
+            }
+            // What is near at rest may come as near again.
+            const Stencil rest = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.rest().col(v); });
+            motion.reference_gap = std::min(reference_gap, std::sqrt(squared_distance(pair.kind, rest)));
+            motions_.push_back(motion);
+        }
     }
-    for (;;) {
-        double least = 1;
-        for (std::size_t p = 0; p < cluster.pairs.size(); ++p) {
-            const MovingPair& pair = cluster.pairs[p];
-            const Stencil d = gather(pair.vertices, displacement);
-            limits[p] = 1;
-            if (d.isZero(0))
-                continue;
-            const Stencil x = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.position(v); });
-            const double distance = std::sqrt(squared_distance(pair.kind, x));
-            // Only the least limit counts, and those that are equal to it within rounding.
-            const double kept = kept_gap(distance, references[p]), end = std::min(1.0, least * (1 + 2 * same));
-            limits[p] = keeps_apart(pair.kind, x, d, distance, kept, end) ? end : safe_step(pair.kind, x, d, kept, end);
-            least = std::min(least, limits[p]);
+
+    /// Advances until every vertex has arrived or is stopped; returns how many were stopped.
+    int run() {
+        int stopped = 0;
+        for (;;) {
+            double least = 1;
+            for (Motion& motion : motions_) {
+                motion.limit = limit_of(motion, std::min(1.0, least * (1 + 2 * same)));
+                least = std::min(least, motion.limit);
+            }
+            advance(least);
+            if (least == 1)
+                return stopped;
+            stopped += stop(least);
         }
-        for (auto& [v, d] : remaining) {
-            mesh.set_position(v, least == 1 ? Vec3(mesh.position(v) + d) : Vec3(mesh.position(v) + least * d));
-            d *= 1 - least;
+    }
+
+private:
+    static constexpr double same = 1e-6; ///< limits that differ by no more than this share are reached together
+
+    struct Motion {
+        MovingPair pair;
+        std::array<int, 4> movers; ///< of its vertices, -1 for one that does not move
+        double reference_gap = 0;  ///< m
+        double least_distance = 0; ///< m: it is no nearer now
+        double limit = 1;
+    };
+
+    Vec3 displacement(int mover) const { return mover < 0 ? Vec3::Zero() : remaining_[at(mover)]; }
+
+    /// A bound on how much nearer the two come on the whole of their way, m.
+    double approach(const Motion& motion) const {
+        double squared = 0;
+        for (int mover : motion.movers)
+            if (mover >= 0)
+                squared = std::max(squared, remaining_[at(mover)].squaredNorm());
+        return 2 * std::sqrt(squared);
+    }
+
+    /// The share of its way up to which a pair is safe, `end` if that is less.
+    double limit_of(Motion& motion, double end) const {
+        const double nearer = approach(motion) * end;
+        if (nearer == 0)
+            return 1;
+        // Far pairs keep more than kept_gap() can ask for.
+        if (nearer <= 0.5 * motion.least_distance && motion.least_distance - nearer >= 0.5 * motion.reference_gap)
+            return end;
+        const StencilKind kind = motion.pair.kind;
+        const Stencil x = gather(motion.pair.vertices, [&](int v) -> Vec3 { return mesh_.position(v); });
+        const Stencil d = gather(motion.movers, [&](int mover) { return displacement(mover); });
+        motion.least_distance = std::sqrt(squared_distance(kind, x));
+        const double kept = kept_gap(motion.least_distance, motion.reference_gap);
+        return keeps_apart(kind, x, d, motion.least_distance, kept, end) ? end : safe_step(kind, x, d, kept, end);
+    }
+
+    void advance(double share) {
+        for (Motion& motion : motions_)
+            motion.least_distance -= share * approach(motion);
+        for (std::size_t m = 0; m < movers_.size(); ++m) {
+            mesh_.set_position(movers_[m], mesh_.position(movers_[m]) + share * remaining_[m]);
+            remaining_[m] *= 1 - share;
         }
-        if (least == 1)
-            return stopped;
-        for (std::size_t p = 0; p < cluster.pairs.size(); ++p)
-            if (limits[p] <= least * (1 + same))
-                for (int v : cluster.pairs[p].vertices)
-                    if (const auto found = remaining.find(v); found != remaining.end()) {
-                        remaining.erase(found);
+    }
+
+    /// Stops the vertices of the pairs that have reached their limit; returns how many.
+    int stop(double limit) {
+        int stopped = 0;
+        for (const Motion& motion : motions_)
+            if (motion.limit <= limit * (1 + same))
+                for (int mover : motion.movers)
+                    if (mover >= 0 && !remaining_[at(mover)].isZero(0)) {
+                        remaining_[at(mover)].setZero();
                         ++stopped;
                     }
+        return stopped;
     }
-}
+
+    ExpandingMesh& mesh_;
+    std::vector<int> movers_; ///< their vertices
+    std::vector<Vec3> remaining_;
+    std::vector<Motion> motions_;
+};
 
 std::vector<Cluster> cluster_records(const std::vector<std::vector<MovingPair>>& pairs, const Movers& movers) {
     const int count = static_cast<int>(pairs.size());
@@ -229,8 +288,9 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
     const std::vector<Cluster> clusters = cluster_records(pairs, movers);
 
     std::vector<int> stopped(clusters.size());
-    parallel_for(static_cast<int>(clusters.size()), 1,
-                 [&](int c) { stopped[at(c)] = advance(mesh, clusters[at(c)], batch, options.reference_gap); });
+    parallel_for(static_cast<int>(clusters.size()), 1, [&](int c) {
+        stopped[at(c)] = ClusterMotion(mesh, clusters[at(c)], batch, options.reference_gap).run();
+    });
 
     BatchMotionResult result;
     result.min_gap = std::numeric_limits<double>::infinity();
