@@ -187,9 +187,11 @@ double ActiveSet::rest_distance(const Candidates& candidates, StencilKind kind, 
     return clearances_.between(kind, candidates.primitives(kind, candidate));
 }
 
-PairRange ActiveSet::range(StencilKind kind, int candidate, const Candidates& candidates) const {
-    return pair_range(options_, same_part(candidates.vertices(kind, candidate)),
-                      rest_distance(candidates, kind, candidate));
+double ActiveSet::least_distance(StencilKind kind, int candidate, const Candidates& candidates) const {
+    const bool one_part = same_part(candidates.vertices(kind, candidate));
+    if (one_part && kind == StencilKind::edge_edge)
+        return 0;
+    return pair_range(options_, one_part, rest_distance(candidates, kind, candidate)).least;
 }
 
 } // namespace plisse

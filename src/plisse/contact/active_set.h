@@ -24,8 +24,9 @@ public:
     double least_gap() const { return least_gap_; }                         ///< m; as Contact::min_gap
     double least_thickness_share() const { return least_thickness_share_; } ///< as Contact's
 
-    /// The range of a candidate.
-    PairRange range(StencilKind kind, int candidate, const Candidates& candidates) const;
+    /// How far apart a candidate has to stay, m. Edges of one part may come as near as the points at their ends may:
+    /// where they cross, their barrier keeps more.
+    double least_distance(StencilKind kind, int candidate, const Candidates& candidates) const;
     void set_options(const ContactOptions& options) { options_ = options; }
 
 private:

@@ -80,7 +80,7 @@ double Contact::State::safe_length_of(StencilKind kind, int candidate, const Pos
     if (sweep_squared >= reach * reach)
         return length;
     const Stencil at_x = gather(x, vertices);
-    const double least = active.range(kind, candidate, candidates).least;
+    const double least = active.least_distance(kind, candidate, candidates);
     const auto kept_of = [&](double distance) {
         return least + std::min(options.ccd_ratio * (distance - least), options.distance);
     };
