@@ -161,6 +161,38 @@ TEST(ShellProblem, SaysWhatLimitsAStep) {
     }
 }
 
+TEST(ShellProblem, FindsTheTightestPairThatCanMove) {
+    Model model = empty_model("sheet above a floor");
+    add_body(model, "sheet", {}, sheet_mesh(0.2, 0.1), Vec3(0, 0.01, 0));
+    const int count = model.mesh.vertex_count();
+    Obstacle floor;
+    floor.name = "floor";
+    append_part(model, sheet_mesh(0.4, 0.1), Vec3::Zero(), floor.vertices, floor.faces);
+    model.obstacles.push_back(floor);
+    model.contact.distance = 4e-3;
+    model.contact.thickness = 1e-3;
+    Positions x = model.start;
+    x.row(1).head(count).setConstant(3e-3);
+    const auto tightest_pair = [&](const Positions& points) {
+        Context context;
+        const Discretization discretization(model, 1, context);
+        return ShellProblem(discretization, 0, EnergiesOf::level, context).tightest_pair(as_vector(points));
+    };
+    EXPECT_EQ(tightest_pair(model.start).share, 1);
+    const TightestPair tightest = tightest_pair(x);
+    EXPECT_NEAR(tightest.gap, 2e-3, 1e-15);
+    EXPECT_NEAR(tightest.share, 0.5, 1e-12);
+    for (const char* part : {" of sheet", " of floor", " 0.003 m apart at ("})
+        EXPECT_NE(tightest.words.find(part), std::string::npos) << tightest.words;
+    Handle all;
+    all.name = "all";
+    for (int v = 0; v < count; ++v)
+        all.vertices.push_back(v);
+    model.handles.push_back(all);
+    EXPECT_EQ(tightest_pair(x).share, 1) << "no force moves it";
+    EXPECT_EQ(tightest_pair(x).words, "");
+}
+
 TEST(ShellProblem, SaysWhichTriangleWouldCollapse) {
     Model model = empty_model("sheet");
     add_body(model, "sheet", {}, sheet_mesh(0.1, 0.03));

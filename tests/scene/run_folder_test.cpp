@@ -57,6 +57,8 @@ Checkpoint sample_checkpoint(std::uint64_t seed) {
     c.settle_step = 3;
     c.settle_time_step = 0.1 / 3;
     c.settle_tolerance = 1e-3 / 7;
+    c.stiffness_factor = 30.0 / 7;
+    c.stiffening_helps = seed % 2 == 0;
     c.settled = true;
     c.t = 0.7;
     c.positions = random_positions(50, seed);
@@ -72,6 +74,8 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_EQ(a.settle_step, b.settle_step);
     EXPECT_EQ(a.settle_time_step, b.settle_time_step);
     EXPECT_EQ(a.settle_tolerance, b.settle_tolerance);
+    EXPECT_EQ(a.stiffness_factor, b.stiffness_factor);
+    EXPECT_EQ(a.stiffening_helps, b.stiffening_helps);
     EXPECT_EQ(a.settled, b.settled);
     EXPECT_EQ(a.t, b.t);
     EXPECT_EQ(a.positions, b.positions);
@@ -272,6 +276,22 @@ TEST_F(RunFolderTest, LogsWhatCutsStepsShort) {
     const std::size_t second = log.find('\n') + 1;
     EXPECT_FALSE(Json::parse(log.substr(0, second)).contains("cut_by"));
     EXPECT_EQ(Json::parse(log.substr(second))["cut_by"], Json({{"cause", "contact"}, {"detail", "a and b"}}));
+}
+
+TEST_F(RunFolderTest, LogsHowStiffTheBarrierBecomes) {
+    {
+        RunFolder folder = open(Existing::refuse);
+        folder.on_stiffening({1, 3, 0.5, 1e-4, 300, 0.1, "a and b"});
+        folder.on_report(sample_report());
+    }
+    const Json line = Json::parse(read_text(output() / "log.jsonl"));
+    EXPECT_EQ(line, Json({{"level", 1},
+                          {"step", 3},
+                          {"t", 0.5},
+                          {"stiffness_factor", 300.0},
+                          {"gap_share", 1e-4},
+                          {"pair", "a and b"},
+                          {"seconds", 0.1}}));
 }
 
 TEST_F(RunFolderTest, ResumesFromTheCheckpointAndForgetsWhatCameAfter) {

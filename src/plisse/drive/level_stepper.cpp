@@ -17,6 +17,13 @@ constexpr int preview_iteration_cap = 20;
 constexpr int final_iteration_cap = 1000;
 constexpr int most_friction_updates = 30; // of the normal forces, in one step
 constexpr int most_whole_updates = 5;     // then by halves, lest forces and positions chase each other in circles
+// Gaps of the tightest pair of a converged step, over that at which it begins to repel (docs/decisions/0017).
+constexpr double least_gap_share = 1e-3;      // below, the barrier is stiffened
+constexpr double wanted_gap_share = 3e-2;     // after that
+constexpr double helpful_growth = 2;          // else it is not forces that press surfaces together
+constexpr double tolerance_share = 0.1;       // of a gap, that counts as converged while it is too small
+constexpr double most_stiffness_factor = 1e4; // in a run
+constexpr int most_stiffenings = 3;           // in a step
 
 LevelStepper::Outcome outcome_of(const NewtonSummary& summary) {
     switch (summary.end) {
@@ -47,6 +54,7 @@ LevelStepper::LevelStepper(const Discretization& discretization, int level, Ener
 void LevelStepper::start_from(const Checkpoint& progress) {
     progress_ = progress;
     x_ = as_vector(progress.positions);
+    problem_.enforce_thickness(1, progress_.stiffness_factor);
     problem_.begin_settling_step(progress.positions, progress.t, settings_.time_step, progress.friction);
 }
 
@@ -142,6 +150,59 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
         whole.end = part.end;
         whole.iterations += part.iterations;
     }
+    return whole;
+}
+
+void LevelStepper::set_stiffness_factor(double factor) {
+    progress_.stiffness_factor = factor;
+    problem_.enforce_thickness(1, factor);
+}
+
+void LevelStepper::stiffen_barrier(double t, const TightestPair& tightest) {
+    const double before = progress_.stiffness_factor;
+    // At equilibrium, gaps this small grow in proportion.
+    set_stiffness_factor(std::min(before * wanted_gap_share / tightest.share, most_stiffness_factor));
+    tell_stiffness(t, tightest, fmt::format("becomes {:.3g} times as stiff", progress_.stiffness_factor / before));
+}
+
+void LevelStepper::tell_stiffness(double t, const TightestPair& tightest, std::string_view change) {
+    const int step = log_.level_report(level_).steps + 1;
+    log_.stiffening({level_, step, t, tightest.share, progress_.stiffness_factor, log_.seconds(), tightest.words});
+    log_.context().on_message(fmt::format("level {}, t = {:.4g} s: the barrier {} ({:.3g} times as at first): {}, "
+                                          "{:.3g} of where they begin to repel",
+                                          level_, t, change, progress_.stiffness_factor, tightest.words,
+                                          tightest.share));
+}
+
+NewtonSummary LevelStepper::solve_pressed_step(double t, double tolerance, const char* phase, int most_iterations) {
+    NewtonSummary whole = solve_rubbing_step(t, tolerance, phase, most_iterations);
+    TightestPair tightest = problem_.tightest_pair(x_);
+    const auto solve_on = [&] {
+        const double finer = std::min(tolerance, tolerance_share * tightest.gap / settings_.time_step);
+        const NewtonSummary part = solve_rubbing_step(t, finer, phase, std::max(1, most_iterations - whole.iterations));
+        whole.end = part.end;
+        whole.iterations += part.iterations;
+        tightest = problem_.tightest_pair(x_);
+    };
+    const auto is_too_tight = [&] {
+        return whole.end == NewtonEnd::converged && whole.iterations < most_iterations &&
+               tightest.share < least_gap_share;
+    };
+    if (is_too_tight()) // perhaps only within a tolerance that is coarser than the gap
+        solve_on();
+    for (int times = 0; times < most_stiffenings && progress_.stiffening_helps && is_too_tight(); ++times) {
+        const double factor_before = progress_.stiffness_factor, share_before = tightest.share;
+        if (factor_before == most_stiffness_factor)
+            break;
+        stiffen_barrier(t, tightest);
+        solve_on();
+        if (whole.end == NewtonEnd::converged && tightest.share < helpful_growth * share_before) {
+            progress_.stiffening_helps = false;
+            set_stiffness_factor(factor_before);
+            tell_stiffness(t, tightest, "is as stiff as before again, which it need not be to keep them apart");
+            solve_on();
+        }
+    }
     ++log_.level_report(level_).steps;
     return whole;
 }
@@ -160,7 +221,7 @@ LevelStepper::Outcome LevelStepper::bring_to_thickness(double t) {
         log_.context().on_message(fmt::format("level {}: surfaces lie within their contact thickness, the nearest at "
                                               "{:.3g} of it; moving them apart",
                                               level_, share));
-    double stiffness_factor = 1;
+    double stiffness_factor = progress_.stiffness_factor;
     Outcome outcome = Outcome::done;
     for (int round = 0; share < outside; ++round) {
         if (round == most_rounds) {
@@ -179,7 +240,7 @@ LevelStepper::Outcome LevelStepper::bring_to_thickness(double t) {
         if (outside - share > 0.5 * (outside - share_before))
             stiffness_factor *= 4;
     }
-    problem_.enforce_thickness(1);
+    problem_.enforce_thickness(1, progress_.stiffness_factor);
     return outcome;
 }
 
@@ -197,7 +258,7 @@ LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
             progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
         begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
         extrapolate(motion);
-        const NewtonSummary summary = solve_rubbing_step(t, settings_.tolerance, "preview", iteration_cap());
+        const NewtonSummary summary = solve_pressed_step(t, settings_.tolerance, "preview", iteration_cap());
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;
@@ -218,7 +279,7 @@ LevelStepper::Outcome LevelStepper::step_once(double t) {
     const VecX before = x_;
     begin_step(t, settings_.time_step, x_);
     const NewtonSummary summary =
-        solve_rubbing_step(t, settings_.tolerance, is_last_ ? "final" : "refine", iteration_cap());
+        solve_pressed_step(t, settings_.tolerance, is_last_ ? "final" : "refine", iteration_cap());
     progress_.friction = problem_.friction_memory();
     if (summary.end == NewtonEnd::cancelled)
         x_ = before;
@@ -237,7 +298,7 @@ LevelStepper::Outcome LevelStepper::settle(double t) {
         const int most = progress_.settle_step == 0 || scripts_have_arrived()
                              ? std::min(iteration_cap(), preview_iteration_cap)
                              : settings_.max_iterations_per_step.value_or(final_iteration_cap);
-        const NewtonSummary summary = solve_rubbing_step(t, progress_.settle_tolerance, "settle", most);
+        const NewtonSummary summary = solve_pressed_step(t, progress_.settle_tolerance, "settle", most);
         if (summary.end == NewtonEnd::cancelled) {
             x_ = before;
             return Outcome::cancelled;

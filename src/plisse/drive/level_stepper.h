@@ -55,6 +55,12 @@ private:
     NewtonSummary solve_step(double t, double tolerance, const char* phase, int most_iterations);
     /// The same, and again for as long as the normal forces that friction goes by change what it finds.
     NewtonSummary solve_rubbing_step(double t, double tolerance, const char* phase, int most_iterations);
+    /// The same. Where it ends with surfaces pressed so tightly that the barrier is ill-conditioned, it stiffens the
+    /// barrier, for all that follows on this level and the next ones, and solves on (docs/decisions/0017).
+    NewtonSummary solve_pressed_step(double t, double tolerance, const char* phase, int most_iterations);
+    void set_stiffness_factor(double factor);
+    void stiffen_barrier(double t, const TightestPair& tightest);
+    void tell_stiffness(double t, const TightestPair& tightest, std::string_view change);
     void save_checkpoint(double t);
     int iteration_cap() const;
     double fraction(std::string_view phase) const;

@@ -47,7 +47,8 @@ std::string in_words(const Discretization& discretization, int level, const Stra
 } // namespace
 
 LimitRelaxationResult relax_to_strain_limits(const Discretization& discretization, int level,
-                                             const std::vector<std::uint8_t>& is_new, Positions& x, Context& context) {
+                                             const std::vector<std::uint8_t>& is_new, Positions& x, Context& context,
+                                             double stiffness_factor) {
     LimitRelaxationResult result;
     const StrainLimit limit(discretization, level);
     StrainLimit::Excess excess = limit.excess(x, wanted_room);
@@ -61,7 +62,7 @@ LimitRelaxationResult relax_to_strain_limits(const Discretization& discretizatio
     options.max_iterations = iterations_of_round;
     VecX unknowns = as_vector(x);
     // Surfaces may still be nearer than their contact thickness, which is mended next.
-    problem.enforce_thickness(std::min(1.0, 0.9 * problem.least_thickness_share(unknowns)));
+    problem.enforce_thickness(std::min(1.0, 0.9 * problem.least_thickness_share(unknowns)), stiffness_factor);
     for (const Flags& held : held_unknowns(discretization, level, is_new)) {
         double stiffness = 1;
         for (int round = 0; round < most_rounds && excess.faces > 0 && !context.cancelled(); ++round) {

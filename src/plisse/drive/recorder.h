@@ -27,6 +27,16 @@ struct IterationRecord {
     StepLimit limit; ///< what has been cutting steps short; empty where it is not news
 };
 
+/// A change of the barrier's stiffness, made where a step ended with surfaces too near for it.
+struct StiffeningRecord {
+    int level = 0, step = 0;
+    double t = 0;
+    double gap_share = 0; ///< of the tightest pair: its gap over that at which it begins to repel
+    double factor = 1;    ///< by which the barrier is stiffer from now on than at the start of the run
+    double seconds = 0;
+    std::string pair; ///< the tightest, in words, and where it is
+};
+
 struct EnergyParts {
     double elastic = 0, strain_limit = 0, contact = 0, friction = 0, gravity = 0, loads = 0; ///< J
 };
@@ -86,6 +96,8 @@ struct Checkpoint {
     int settle_step = 0;            ///< settling steps done on this level
     double settle_time_step = 0;    ///< s, of the next settling step
     double settle_tolerance = 0;    ///< m/s, of the next settling step
+    double stiffness_factor = 1;    ///< of the barrier
+    bool stiffening_helps = true;   ///< whether a stiffer barrier has widened the smallest gaps of this level so far
     bool settled = false;           ///< this level is done
     double t = 0;                   ///< s
     Positions positions;            ///< of the level's vertices, exact
@@ -101,6 +113,7 @@ public:
     virtual ~Recorder() = default;
     virtual void on_hierarchy(const Hierarchy&) {}
     virtual void on_iteration(const IterationRecord&) {}
+    virtual void on_stiffening(const StiffeningRecord&) {}
     virtual void on_frame(const Frame&) {}
     /// After every completed step, and at the end.
     virtual void on_checkpoint(const Checkpoint&) {}

@@ -108,7 +108,8 @@ std::vector<std::uint8_t> new_vertices(const Discretization& discretization, int
 
 } // namespace
 
-RefineResult refine(const Discretization& discretization, int from, const Positions& x, double t, Context& context) {
+RefineResult refine(const Discretization& discretization, int from, const Positions& x, double t, Context& context,
+                    double stiffness_factor) {
     const Stopwatch watch;
     RefineResult result;
     const HierarchyLevel& coarse = discretization.mesh(from);
@@ -144,8 +145,8 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
         context.on_progress(shown);
     }
     Positions expanded = mesh.level_positions(from + 1);
-    const LimitRelaxationResult relaxed =
-        relax_to_strain_limits(discretization, from + 1, new_vertices(discretization, from), expanded, context);
+    const LimitRelaxationResult relaxed = relax_to_strain_limits(
+        discretization, from + 1, new_vertices(discretization, from), expanded, context, stiffness_factor);
     if (context.cancelled()) {
         result.cancelled = true;
         return result;

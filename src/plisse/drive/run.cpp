@@ -42,7 +42,7 @@ public:
 private:
     bool simulate();
     bool run_level(LevelStepper& stepper);
-    std::optional<Positions> refine_from(int level, const Positions& x);
+    std::optional<Positions> refine_from(const Checkpoint& coarse);
     void check_start(const Positions& x) const;
     void check_limits(int level, const Positions& x) const;
     void finish(LevelStepper& stepper);
@@ -174,8 +174,9 @@ bool Driver::run_level(LevelStepper& stepper) {
     return true;
 }
 
-std::optional<Positions> Driver::refine_from(int level, const Positions& x) {
-    RefineResult refined = refine(discretization_, level, x, duration_, context_);
+std::optional<Positions> Driver::refine_from(const Checkpoint& coarse) {
+    RefineResult refined =
+        refine(discretization_, coarse.level, coarse.positions, duration_, context_, coarse.stiffness_factor);
     if (refined.cancelled)
         return std::nullopt;
     log_.report().refinements.push_back(refined.report);
@@ -211,11 +212,12 @@ bool Driver::simulate() {
             finish(stepper);
             return true;
         }
-        const std::optional<Positions> refined = refine_from(level, stepper.positions());
+        const std::optional<Positions> refined = refine_from(stepper.progress());
         if (!refined)
             return false;
         log_.frame(level + 1, duration_, "refine", *refined);
         progress = fresh_progress(level + 1, *refined);
+        progress.stiffness_factor = stepper.progress().stiffness_factor;
         result_.level = level + 1;
         result_.positions = *refined;
         log_.checkpoint(progress);

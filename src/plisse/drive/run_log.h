@@ -23,6 +23,7 @@ public:
     /// Saves a frame and adds its intersecting pairs, found with exact predicates, to the report.
     void frame(int level, double t, const std::string& phase, const Positions& x);
     void iteration(const IterationRecord& record) { recorder_.on_iteration(record); }
+    void stiffening(const StiffeningRecord& record) { recorder_.on_stiffening(record); }
     void checkpoint(Checkpoint checkpoint);
     /// Writes the report as it stands.
     void publish();

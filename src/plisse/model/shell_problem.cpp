@@ -481,6 +481,35 @@ double ShellProblem::min_gap(const VecX& x) {
     return contact_->min_gap(level_positions(x));
 }
 
+TightestPair ShellProblem::tightest_pair(const VecX& x) {
+    const Positions& points = level_positions(x);
+    const auto& prescribed = discretization_.layout(level_).prescribed;
+    const auto is_free = [&](int v) {
+        const auto first = prescribed.begin() + 3 * v;
+        return std::find(first, first + 3, 0) != first + 3;
+    };
+    const ActivePair* found = nullptr;
+    TightestPair tightest;
+    for (const ActivePair& pair : contact_->active_pairs(points)) {
+        const double least = std::sqrt(pair.parameters.least_squared);
+        const double gap = std::sqrt(pair.separation.squared_distance) - least;
+        const double share = gap / (std::sqrt(pair.parameters.activation_squared) - least);
+        if (share < tightest.share && std::any_of(pair.vertices.begin(), pair.vertices.end(), is_free)) {
+            found = &pair;
+            tightest.gap = gap;
+            tightest.share = share;
+        }
+    }
+    if (found) {
+        Vec3 place = Vec3::Zero();
+        for (int i = 0; i < 4; ++i)
+            place += 0.5 * std::abs(found->separation.weights[i]) * points.col(found->vertices[at(i)]);
+        const double distance = std::sqrt(found->separation.squared_distance);
+        tightest.words = in_words({found->kind, found->primitives, 1, distance, place});
+    }
+    return tightest;
+}
+
 double ShellProblem::least_thickness_share(const VecX& x) {
     return contact_->least_thickness_share(level_positions(x));
 }

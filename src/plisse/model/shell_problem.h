@@ -27,6 +27,13 @@ struct NodalForces {
     Positions total() const { return elastic + strain_limit + contact + friction + gravity + loads; }
 };
 
+/// The pair that repels with the smallest gap for where it begins to.
+struct TightestPair {
+    double gap = 0;    ///< m
+    double share = 1;  ///< the gap over that at which it begins to repel; 1 where no pair repels
+    std::string words; ///< what it is, and where; empty where there is none
+};
+
 struct EnergyBreakdown {
     double elastic = 0, strain_limit = 0, contact = 0, friction = 0, gravity = 0, loads = 0;
 };
@@ -82,6 +89,8 @@ public:
     /// forces are round-off.
     double residual(const VecX& x);
     double min_gap(const VecX& x);
+    /// Of the pairs with an unknown that is free.
+    TightestPair tightest_pair(const VecX& x);
     /// As Contact's.
     double least_thickness_share(const VecX& x);
     /// As Contact's enforce().

@@ -102,6 +102,8 @@ Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& h
             {"settle_step", c.settle_step},
             {"settle_time_step", c.settle_time_step},
             {"settle_tolerance", c.settle_tolerance},
+            {"stiffness_factor", c.stiffness_factor},
+            {"stiffening_helps", c.stiffening_helps},
             {"settled", c.settled},
             {"t", c.t},
             {"frame_numbers", c.frame_numbers},
@@ -118,6 +120,8 @@ SavedCheckpoint from_manifest(const Json& json) {
     json.at("settle_step").get_to(c.settle_step);
     json.at("settle_time_step").get_to(c.settle_time_step);
     json.at("settle_tolerance").get_to(c.settle_tolerance);
+    json.at("stiffness_factor").get_to(c.stiffness_factor);
+    json.at("stiffening_helps").get_to(c.stiffening_helps);
     json.at("settled").get_to(c.settled);
     json.at("t").get_to(c.t);
     json.at("frame_numbers").get_to(c.frame_numbers);

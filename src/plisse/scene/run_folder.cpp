@@ -131,6 +131,16 @@ void RunFolder::on_iteration(const IterationRecord& record) {
     log_.append(line);
 }
 
+void RunFolder::on_stiffening(const StiffeningRecord& record) {
+    log_.append({{"level", record.level},
+                 {"step", record.step},
+                 {"t", record.t},
+                 {"stiffness_factor", record.factor},
+                 {"gap_share", record.gap_share},
+                 {"pair", record.pair},
+                 {"seconds", record.seconds}});
+}
+
 void RunFolder::on_frame(const Frame& frame) {
     if (!options_.frames)
         return;

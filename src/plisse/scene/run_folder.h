@@ -37,6 +37,7 @@ public:
 
     void on_hierarchy(const Hierarchy& hierarchy) override;
     void on_iteration(const IterationRecord& record) override;
+    void on_stiffening(const StiffeningRecord& record) override;
     void on_frame(const Frame& frame) override;
     void on_checkpoint(const Checkpoint& checkpoint) override;
     void on_report(const RunReport& report) override;
