@@ -25,9 +25,11 @@ struct MovingPair {
 
 /// The work of one kind of pair: what passes each of the screens of Contact::max_step.
 struct PairWork {
-    std::vector<MovingPair> swept;            ///< not far enough apart by their drift: their boxes are looked at
-    std::vector<MovingPair> near;             ///< nor by their boxes: their distance is found
-    std::vector<MovingPair> clear, colliding; ///< nor by their speed: safe_step finds no limit, or one
+    std::vector<MovingPair> screened; ///< not far enough apart by their drift: a bound on their distance, and later the
+                                      ///< distance itself, is held against their speed
+    std::vector<MovingPair> swept;    ///< nor by their speed: their boxes are looked at
+    std::vector<MovingPair> near;     ///< nor by their boxes: their distance is found
+    std::vector<MovingPair> clear, colliding; ///< nor by distance and speed: safe_step finds no limit, or one
     std::vector<ActivePair> active;           ///< pairs that repel at the queries' x
     std::vector<Stencil> active_at;
 };
@@ -57,7 +59,7 @@ double size_of(const Candidates& candidates) {
 class Replay {
 public:
     explicit Replay(const CrowdedRun& run)
-        : run_(run), candidates_(run.mesh, run.options.distance, run.options.self), active_(run.mesh, run.options) {
+        : run_(run), candidates_(run.mesh, run.options.reach(), run.options.self), active_(run.mesh, run.options) {
         const Positions* last = nullptr;
         for (const StepQuery& query : run.queries) {
             filter(query);
@@ -78,30 +80,40 @@ private:
             work_.searches_along.push_back(&query);
             work_.found_along += size_of(candidates_);
         }
+        candidates_.find_drift(query.x, query.x, start_drift_);
         candidates_.find_drift(query.x, end, drift_);
         double length = 1;
         for (const StencilKind kind : kinds)
             for (int i = 0; i < candidates_.size(kind); ++i)
-                if (candidates_.least_distance(kind, i, drift_) < run_.options.distance)
-                    filter_pair(kind, gather(query.x, candidates_.vertices(kind, i)),
-                                gather(query.d, candidates_.vertices(kind, i)), length);
+                if (candidates_.least_distance(kind, i, drift_) < run_.options.reach())
+                    filter_pair(kind, i, query, length);
     }
 
-    void filter_pair(StencilKind kind, const Stencil& x, const Stencil& d, double& length) {
+    double kept_distance(double distance, double least) const {
+        return least + std::min(run_.options.ccd_ratio * (distance - least), run_.options.distance);
+    }
+
+    void filter_pair(StencilKind kind, int candidate, const StepQuery& query, double& length) {
         PairWork& work = work_.of_kind[static_cast<std::size_t>(kind)];
-        const double distance = run_.options.distance, ratio = run_.options.ccd_ratio;
-        MovingPair pair{x, d, 0, 0, length};
+        const auto vertices = candidates_.vertices(kind, candidate);
+        MovingPair pair{gather(query.x, vertices), gather(query.d, vertices), 0, 0, length};
+        const auto is_safe = [&](double distance, double least) {
+            pair.distance = distance;
+            pair.kept = kept_distance(distance, least);
+            work.screened.push_back(pair);
+            return keeps_apart(kind, pair.x, pair.d, pair.distance, pair.kept, length);
+        };
+        if (is_safe(candidates_.least_distance(kind, candidate, start_drift_),
+                    run_.options.enforced * run_.options.thickness))
+            return;
         work.swept.push_back(pair);
-        const double sweep_squared = squared_sweep_distance(kind, x, x + d);
-        if (sweep_squared >= distance * distance ||
-            sweep_squared >= ratio * ratio * (x.col(0) - x.col(3)).squaredNorm())
+        const double reach = run_.options.reach();
+        if (squared_sweep_distance(kind, pair.x, pair.x + pair.d) >= reach * reach)
             return;
-        pair.distance = std::sqrt(squared_distance(kind, x));
-        pair.kept = std::min(ratio * pair.distance, distance);
         work.near.push_back(pair);
-        if (keeps_apart(kind, x, d, pair.distance, pair.kept, length))
+        if (is_safe(std::sqrt(squared_distance(kind, pair.x)), active_.least_distance(kind, candidate, candidates_)))
             return;
-        const double step = safe_step(kind, x, d, pair.kept, length);
+        const double step = safe_step(kind, pair.x, pair.d, pair.kept, length);
         (step < length ? work.colliding : work.clear).push_back(pair);
         length = step;
     }
@@ -110,18 +122,19 @@ private:
         if (!candidates_.contain(x)) {
             candidates_.find_around(x);
             work_.found_around += size_of(candidates_);
+        } else if (candidates_.have_drifted(x)) {
+            candidates_.measure(x);
         }
         work_.candidates_seen += size_of(candidates_);
         candidates_.find_drift(x, x, drift_);
-        const double distance = run_.options.distance;
+        const double reach = run_.options.reach();
         for (const StencilKind kind : kinds)
             for (int i = 0; i < candidates_.size(kind); ++i) {
-                const double rest = candidates_.rest_distance(kind, i), range = rest < distance ? 0.5 * rest : distance;
-                if (candidates_.least_distance(kind, i, drift_) >= range)
+                if (candidates_.least_distance(kind, i, drift_) >= reach)
                     continue;
                 const Stencil stencil = gather(x, candidates_.vertices(kind, i));
                 work_.separations[static_cast<std::size_t>(kind)] +=
-                    squared_sweep_distance(kind, stencil, stencil) < range * range;
+                    squared_sweep_distance(kind, stencil, stencil) < reach * reach;
             }
     }
 
@@ -136,7 +149,7 @@ private:
 
     const CrowdedRun& run_;
     Candidates candidates_;
-    Candidates::Drift drift_;
+    Candidates::Drift start_drift_, drift_;
     ActiveSet active_;
     ContactWork work_;
 };
@@ -192,7 +205,7 @@ void distance(benchmark::State& state) {
 
 void speed_screen(benchmark::State& state) {
     const auto kind = kind_of(state);
-    const auto& pairs = contact_work().of(kind).near;
+    const auto& pairs = contact_work().of(kind).screened;
     run_items(state, pairs, count(pairs), [&](const MovingPair& pair) {
         return keeps_apart(kind, pair.x, pair.d, pair.distance, pair.kept, pair.end);
     });
@@ -256,7 +269,7 @@ void projected_hessian_of_pair(benchmark::State& state) {
 
 Candidates new_candidates() {
     const CrowdedRun& run = crowded_run();
-    return {run.mesh, run.options.distance, run.options.self};
+    return {run.mesh, run.options.reach(), run.options.self};
 }
 
 /// Runs search(candidates, query) over the queries. What it finds are the items; calls: how many the whole run found

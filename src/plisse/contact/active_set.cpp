@@ -120,31 +120,28 @@ std::optional<Separation> ActiveSet::separate_unless_seen(const Candidates& cand
 
 std::optional<ActiveSet::NearPair> ActiveSet::look_at(const Candidates& candidates, StencilKind kind, int candidate,
                                                       const Positions& x, Chunk& chunk) const {
-    const double least_distance = candidates.least_distance(kind, candidate, drift_);
-    if (least_distance >= options_.reach())
+    const double reach = options_.reach();
+    if (candidates.least_distance(kind, candidate, drift_) >= reach)
         return std::nullopt;
     const auto vertices = candidates.vertices(kind, candidate);
+    const Stencil stencil = gather(x, vertices);
+    if (squared_sweep_distance(kind, stencil, stencil) >= reach * reach)
+        return std::nullopt;
+    const std::optional<Separation> separation = separate_unless_seen(candidates, kind, candidate, stencil);
+    if (!separation || separation->squared_distance >= reach * reach)
+        return std::nullopt;
+    const double distance = std::sqrt(separation->squared_distance);
     const double apart_at_rest = rest_distance(candidates, kind, candidate);
     const PairRange range = pair_range(options_, same_part(vertices), apart_at_rest);
-    const bool counts_as_gap = !same_part(vertices) || apart_at_rest >= options_.reach();
-    const double farthest = counts_as_gap ? range.thickness + options_.distance : range.activation;
-    if (least_distance >= farthest)
-        return std::nullopt;
-    const Stencil stencil = gather(x, vertices);
-    if (squared_sweep_distance(kind, stencil, stencil) >= farthest * farthest)
-        return std::nullopt;
-    const std::optional<Separation> separated = separate_unless_seen(candidates, kind, candidate, stencil);
-    if (!separated || separated->squared_distance >= farthest * farthest)
-        return std::nullopt;
-    const Separation& separation = *separated;
-    const double distance = std::sqrt(separation.squared_distance);
-    if (counts_as_gap)
-        chunk.least_gap = std::min(chunk.least_gap, distance - range.thickness);
+    const double gap = distance - range.thickness;
+    const bool counts_as_gap = !same_part(vertices) || apart_at_rest >= reach;
+    if (counts_as_gap && gap < options_.distance)
+        chunk.least_gap = std::min(chunk.least_gap, gap);
     if (range.thickness > 0)
         chunk.least_thickness_share = std::min(chunk.least_thickness_share, distance / range.thickness);
     if (distance >= range.activation)
         return std::nullopt;
-    return NearPair{range, separation};
+    return NearPair{range, *separation};
 }
 
 void ActiveSet::add(const ActivePair& pair, const Positions& x, Chunk& chunk) {
@@ -189,7 +186,7 @@ double ActiveSet::rest_distance(const Candidates& candidates, StencilKind kind, 
 
 double ActiveSet::least_distance(StencilKind kind, int candidate, const Candidates& candidates) const {
     const bool one_part = same_part(candidates.vertices(kind, candidate));
-    if (one_part && kind == StencilKind::edge_edge)
+    if (options_.thickness == 0 || (one_part && kind == StencilKind::edge_edge))
         return 0;
     return pair_range(options_, one_part, rest_distance(candidates, kind, candidate)).least;
 }

@@ -42,6 +42,12 @@ double squared_sweep_gap(const Stencil& from, const Stencil& to) {
     return squared;
 }
 
+/// The distance, or a lower bound that is at least `cut`.
+double distance_up_to(StencilKind kind, const Stencil& x, double cut) {
+    const double box_squared = squared_sweep_distance(kind, x, x);
+    return std::sqrt(box_squared >= cut * cut ? box_squared : squared_distance(kind, x));
+}
+
 } // namespace
 
 double squared_sweep_distance(StencilKind kind, const Stencil& from, const Stencil& to) {
@@ -84,6 +90,7 @@ bool Candidates::contain(const Positions& x) const {
 void Candidates::find_around(const Positions& x) {
     set_regions(x, nullptr, 0);
     find_pairs(unlimited);
+    measure(x);
 }
 
 double Candidates::find_along(const Positions& x, const Positions& d, double most) {
@@ -92,13 +99,16 @@ double Candidates::find_along(const Positions& x, const Positions& d, double mos
         set_regions(x, &d, share);
         return find_pairs(limit);
     };
-    if (fit(most))
+    if (fit(most)) {
+        measure(x);
         return most;
+    }
     find_around(x);
     limit = std::max(limit, 3 * std::max(vertex_faces_.found.pairs().size(), edge_edges_.found.pairs().size()));
     double share = most / 2;
     while (!fit(share))
         share /= 2;
+    measure(x);
     return share;
 }
 
@@ -113,7 +123,6 @@ std::array<int, 4> Candidates::vertices(StencilKind kind, int i) const {
 }
 
 void Candidates::set_regions(const Positions& x, const Positions* d, double share) {
-    found_at_ = x;
     regions_.resize(static_cast<std::size_t>(x.cols()));
     parallel_for(static_cast<int>(mesh_.vertices.size()), 512, [&](int i) {
         const int v = mesh_.vertices[static_cast<std::size_t>(i)];
@@ -145,45 +154,50 @@ bool Candidates::may_meet(int vertex, int other) const {
 }
 
 bool Candidates::find_pairs(std::size_t most) {
-    const bool complete =
-        vertex_faces_.found.find_between(
-            vertex_tree_, face_tree_,
-            [&](int i, int f) {
-                const int v = mesh_.vertices[static_cast<std::size_t>(i)];
-                const Face& face = mesh_.faces[static_cast<std::size_t>(f)];
-                return v != face[0] && v != face[1] && v != face[2] && may_meet(v, face[0]);
-            },
-            most) &&
-        edge_edges_.found.find_within(
-            edge_tree_,
-            [&](int i, int j) {
-                const Edge &a = mesh_.edges[static_cast<std::size_t>(i)], &b = mesh_.edges[static_cast<std::size_t>(j)];
-                return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] && may_meet(a[0], b[0]);
-            },
-            most);
-    if (!complete)
-        return false;
-    find_distances(StencilKind::point_triangle, vertex_faces_);
-    find_distances(StencilKind::edge_edge, edge_edges_);
-    return true;
+    return vertex_faces_.found.find_between(
+               vertex_tree_, face_tree_,
+               [&](int i, int f) {
+                   const int v = mesh_.vertices[static_cast<std::size_t>(i)];
+                   const Face& face = mesh_.faces[static_cast<std::size_t>(f)];
+                   return v != face[0] && v != face[1] && v != face[2] && may_meet(v, face[0]);
+               },
+               most) &&
+           edge_edges_.found.find_within(
+               edge_tree_,
+               [&](int i, int j) {
+                   const Edge &a = mesh_.edges[static_cast<std::size_t>(i)],
+                              &b = mesh_.edges[static_cast<std::size_t>(j)];
+                   return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] && may_meet(a[0], b[0]);
+               },
+               most);
 }
 
-void Candidates::find_distances(StencilKind kind, Pairs& pairs) const {
+void Candidates::measure(StencilKind kind, Pairs& pairs) const {
     // Further apart than `beyond`, the boxes' distance is as good: drift within the regions uses up no more than that.
-    const double far = 2 * reach_, beyond = reach_ + 4 * slack_;
-    const auto distance = [&](const Positions& x, const std::array<int, 4>& corners, double cut) {
-        const Stencil stencil = gather(x, corners);
-        const double box_squared = squared_sweep_distance(kind, stencil, stencil);
-        return std::sqrt(box_squared >= cut * cut ? box_squared : squared_distance(kind, stencil));
-    };
-    pairs.rest_distances.resize(pairs.found.pairs().size());
-    pairs.found_distances.resize(pairs.found.pairs().size());
+    const double beyond = reach_ + 4 * slack_;
+    pairs.distances.resize(pairs.found.pairs().size());
     parallel_for(size(kind), 512, [&](int i) {
-        const auto p = static_cast<std::size_t>(i);
-        const auto corners = vertices(kind, i);
-        pairs.found_distances[p] = distance(found_at_, corners, beyond);
-        pairs.rest_distances[p] = std::min(far, distance(mesh_.rest, corners, far));
+        pairs.distances[static_cast<std::size_t>(i)] =
+            distance_up_to(kind, gather(measured_at_, vertices(kind, i)), beyond);
     });
+}
+
+void Candidates::measure(const Positions& x) {
+    measured_at_ = x;
+    measure(StencilKind::point_triangle, vertex_faces_);
+    measure(StencilKind::edge_edge, edge_edges_);
+}
+
+bool Candidates::have_drifted(const Positions& x) const {
+    double drift = 0;
+    for (const int v : mesh_.vertices)
+        drift += (x.col(v) - measured_at_.col(v)).norm();
+    return drift > slack_ * static_cast<double>(mesh_.vertices.size());
+}
+
+double Candidates::rest_distance(StencilKind kind, int i) const {
+    const double far = 2 * reach_;
+    return std::min(far, distance_up_to(kind, gather(mesh_.rest, vertices(kind, i)), far));
 }
 
 void Candidates::find_drift(const Positions& x, const Positions& y, Drift& drift) const {
@@ -195,8 +209,9 @@ void Candidates::find_drift(const Positions& x, const Positions& y, Drift& drift
     parallel_for(static_cast<int>(mesh_.vertices.size()), 1024, [&](int i) {
         const int v = mesh_.vertices[static_cast<std::size_t>(i)];
         const double squared =
-            std::max((x.col(v) - found_at_.col(v)).squaredNorm(), (y.col(v) - found_at_.col(v)).squaredNorm());
-        const double rounding = 8 * std::numeric_limits<double>::epsilon() * found_at_.col(v).lpNorm<Eigen::Infinity>();
+            std::max((x.col(v) - measured_at_.col(v)).squaredNorm(), (y.col(v) - measured_at_.col(v)).squaredNorm());
+        const double rounding =
+            8 * std::numeric_limits<double>::epsilon() * measured_at_.col(v).lpNorm<Eigen::Infinity>();
         moved[static_cast<std::size_t>(v)] = std::sqrt(squared) * (1 + 1e-14) + rounding;
     });
     parallel_for(static_cast<int>(mesh_.edges.size()), 1024, [&](int i) {

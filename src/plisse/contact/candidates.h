@@ -42,9 +42,14 @@ public:
         return {first, second};
     }
     /// The pair's distance at rest, m, cut off at twice the reach.
-    double rest_distance(StencilKind kind, int i) const { return of(kind).rest_distances[static_cast<std::size_t>(i)]; }
+    double rest_distance(StencilKind kind, int i) const;
 
-    /// How far primitives may be, anywhere on the straight way from x to y, from where they were when pairs were found.
+    /// Whether most pairs have moved so far since they were measured that their bounds are worth little.
+    bool have_drifted(const Positions& x) const;
+    /// Measures all pairs at x; a search does so at its own x.
+    void measure(const Positions& x);
+
+    /// How far primitives may be, anywhere on the straight way from x to y, from where they were last measured.
     struct Drift {
         std::vector<double> of_vertex, of_edge, of_face; ///< m
     };
@@ -55,14 +60,13 @@ public:
         const bool edges = kind == StencilKind::edge_edge;
         const double moved = (edges ? drift.of_edge : drift.of_vertex)[static_cast<std::size_t>(first)] +
                              (edges ? drift.of_edge : drift.of_face)[static_cast<std::size_t>(second)];
-        return of(kind).found_distances[static_cast<std::size_t>(i)] - moved;
+        return of(kind).distances[static_cast<std::size_t>(i)] - moved;
     }
 
 private:
     struct Pairs {
         OverlapPairs found;
-        std::vector<double> rest_distances;
-        std::vector<double> found_distances; ///< at found_at_, m
+        std::vector<double> distances; ///< at measured_at_, or of the boxes there, m
     };
 
     const Pairs& of(StencilKind kind) const {
@@ -70,7 +74,7 @@ private:
     }
     void set_regions(const Positions& x, const Positions* d, double share);
     bool find_pairs(std::size_t most);
-    void find_distances(StencilKind kind, Pairs& pairs) const;
+    void measure(StencilKind kind, Pairs& pairs) const;
     bool may_meet(int vertex, int other) const;
 
     const CollisionMesh& mesh_;
@@ -80,7 +84,7 @@ private:
     std::vector<Box> regions_;                                ///< per vertex; empty before the first search
     std::vector<Box> vertex_boxes_, edge_boxes_, face_boxes_; ///< of mesh.vertices, edges and faces
     BoxTree vertex_tree_, edge_tree_, face_tree_;
-    Positions found_at_{3, 0};
+    Positions measured_at_{3, 0};
     Pairs vertex_faces_, edge_edges_;
 };
 

@@ -37,6 +37,10 @@ struct Contact::State {
     /// sweep_start along d, whose boxes reach to sweep_end.
     double safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const;
     double safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d, double length) const;
+    /// Of a pair's distance, what it keeps during a step.
+    double kept_distance(double distance, double least) const {
+        return least + std::min(options.ccd_ratio * (distance - least), options.distance);
+    }
     LimitingPair limiting_pair(StencilKind kind, int candidate, const Positions& x, double step) const;
     /// Adds block by block what pairs[begin ...] contribute, the results being in `hessians`.
     void scatter_hessians(std::size_t begin, std::size_t count, NewtonSystem& system) const;
@@ -49,7 +53,7 @@ struct Contact::State {
     Positions sweep_start, sweep_end;
     double sweep_length = 1; ///< from sweep_start to sweep_end, as a share of the motion
     bool sweeps_begin_at_x = true;
-    Candidates::Drift sweep_drift;
+    Candidates::Drift start_drift, sweep_drift; ///< of sweep_start alone, and of the whole way
     std::vector<Vec12> gradients;
     std::vector<Mat12> hessians;
     std::vector<Edge> coupled_pairs;
@@ -64,6 +68,9 @@ void Contact::State::evaluate(const Positions& x) {
     if (!candidates.contain(x)) {
         const PhaseScope scope(*times, Phase::broad_phase);
         candidates.find_around(x);
+    } else if (candidates.have_drifted(x)) {
+        const PhaseScope scope(*times, Phase::broad_phase);
+        candidates.measure(x);
     }
     active.find(candidates, x);
     active_at = x;
@@ -75,25 +82,22 @@ double Contact::State::safe_length_of(StencilKind kind, int candidate, const Pos
     if (candidates.least_distance(kind, candidate, sweep_drift) >= reach)
         return length;
     const auto vertices = candidates.vertices(kind, candidate);
+    const Stencil at_x = gather(x, vertices), motion = gather(d, vertices);
+    const auto is_safe = [&](double distance, double least) {
+        return sweeps_begin_at_x && keeps_apart(kind, at_x, motion, distance, kept_distance(distance, least), length);
+    };
+    // What is kept of a longer distance, or from a lesser least one, leaves more room.
+    if (is_safe(candidates.least_distance(kind, candidate, start_drift), options.enforced * options.thickness))
+        return length;
     const Stencil start = gather(sweep_start, vertices);
     const double sweep_squared = squared_sweep_distance(kind, start, gather(sweep_end, vertices));
     if (sweep_squared >= reach * reach)
         return length;
-    const Stencil at_x = gather(x, vertices);
     const double least = active.least_distance(kind, candidate, candidates);
-    const auto kept_of = [&](double distance) {
-        return least + std::min(options.ccd_ratio * (distance - least), options.distance);
-    };
-    // Any two corners bound the distance at x from above.
-    const double most_kept = kept_of((at_x.col(0) - at_x.col(3)).norm());
-    if (sweep_squared >= most_kept * most_kept)
-        return length;
     const double distance = std::sqrt(squared_distance(kind, at_x));
-    const double kept = kept_of(distance);
-    const Stencil motion = gather(d, vertices);
-    if (sweeps_begin_at_x && keeps_apart(kind, at_x, motion, distance, kept, length))
+    if (is_safe(distance, least))
         return length;
-    return safe_step(kind, start, motion, kept, length);
+    return safe_step(kind, start, motion, kept_distance(distance, least), length);
 }
 
 double Contact::State::safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const {
@@ -214,6 +218,7 @@ double Contact::max_step(const Positions& x, const Positions& d) {
             until = share < 1 - done ? done + share : 1;
             s.sweep_end = x + until * d;
         }
+        s.candidates.find_drift(s.sweep_start, s.sweep_start, s.start_drift);
         s.candidates.find_drift(s.sweep_start, s.sweep_end, s.sweep_drift);
         s.sweep_length = until - done;
         double length = s.safe_length(StencilKind::point_triangle, x, d, s.sweep_length);
