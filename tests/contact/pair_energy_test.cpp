@@ -32,11 +32,11 @@ bool nearest_at_an_end(const Case& c, const Separation& s) {
 }
 
 bool mollified(const Case& c) {
-    return c.parameters.ends != 0 && !EdgeMollifier(c.separation(), c.x, c.parameters.ends).is_one();
+    return c.parameters.ends != 0 && EdgeMollifier(c.separation(), c.x, c.parameters.ends).separations().size() > 1;
 }
 
 /// Random pairs well inside their activation distance and their feature, those of edges with some of their ends
-/// counted; every second pair has a least distance.
+/// counted and some points counted off; every second pair has a least distance.
 std::vector<Case> random_cases(int count) {
     Random random(3);
     std::vector<Case> cases;
@@ -49,6 +49,8 @@ std::vector<Case> random_cases(int count) {
         c.parameters = {random.uniform(0.5, 2), activation * activation};
         if (c.kind == StencilKind::edge_edge)
             c.parameters.ends = static_cast<std::uint8_t>(1 + random.below(15));
+        else if (random.below(4) == 0)
+            c.parameters.scale *= -1;
         if (random.below(2))
             c.parameters.least_squared = random.uniform(0, 0.25) * s.squared_distance;
         bool clear = s.squared_distance > 0.005;
@@ -101,7 +103,8 @@ double least_eigenvalue(const Mat12& matrix) {
     return Eigen::SelfAdjointEigenSolver<Mat12>(matrix).eigenvalues()[0];
 }
 
-TEST(PairEnergy, ProjectionIsSemiDefiniteAndNotBelowTheHessian) {
+TEST(PairEnergy, ProjectionIsSemiDefiniteAndNotFarAboveTheHessian) {
+    double farthest = 0;
     for (const Case& c : random_cases(300)) {
         const Mat12 hessian = pair_hessian(c.parameters, c.separation(), c.x);
         const Mat12 projected = pair_projected_hessian(c.parameters, c.separation(), c.x);
@@ -109,10 +112,12 @@ TEST(PairEnergy, ProjectionIsSemiDefiniteAndNotBelowTheHessian) {
         EXPECT_GE(least_eigenvalue(projected), -round_off);
         EXPECT_GE(least_eigenvalue(projected - hessian), -round_off);
         const Mat12 nearest = positive_part(hessian);
-        if (mollified(c) || c.separation().freedom == 0) {
+        if (!mollified(c) && c.separation().freedom == 0) {
             EXPECT_LT((projected - nearest).norm(), 10 * round_off);
         }
+        farthest = std::max(farthest, projected.norm() / hessian.norm());
     }
+    EXPECT_LT(farthest, 5);
 }
 
 TEST(PairEnergy, ProjectionIsNearestForNearPairsFacingEachOtherInTheMiddle) {
@@ -138,8 +143,8 @@ TEST(PairEnergy, GaussNewtonPartIsTheSecondDerivativeAcross) {
         };
         const double second = (slope(d * 1.00001) - slope(d * 0.99999)) / (2e-5 * d);
         const Vec12 direction = squared_distance_gradient(s) / (2 * d);
-        const Mat12 expected = m * c.parameters.scale * second * direction * direction.transpose();
-        EXPECT_LT((pair_gauss_newton_hessian(c.parameters, s, c.x) - expected).norm(), 1e-6 * expected.norm());
+        const Mat12 expected = std::max(0.0, m * c.parameters.scale * second) * direction * direction.transpose();
+        EXPECT_LE((pair_gauss_newton_hessian(c.parameters, s, c.x) - expected).norm(), 1e-6 * expected.norm());
     }
 }
 

@@ -50,18 +50,19 @@ TEST(EdgeMollifier, DerivativesAgreeWithDifferences) {
     while (trials < 200) {
         const Stencil x = random_stencil(random);
         const Separation s = separate_edges(x);
-        const double m = EdgeMollifier(s, x).value();
-        if (s.freedom < 2 || m == 1 || m < 0.05 || s.squared_distance < 0.01)
+        const EdgeMollifier m(s, x);
+        if (s.freedom < 2 || m.value() == 1 || m.value() < 0.05 || s.squared_distance < 0.01)
             continue;
         ++trials;
         const auto gradient_at = [](const Stencil& y) {
-            const Separation separation = separate_edges(y);
-            return EdgeMollifier(separation, y).gradient();
+            const EdgeMollifier there(separate_edges(y), y);
+            return gradient(there.function(), there.separations());
         };
-        const Vec12 gradient = difference_gradient([](const Stencil& y) { return value_at(y); }, x, 1e-6);
-        const Mat12 hessian = difference_hessian(gradient_at, x, 1e-6);
-        EXPECT_LT((gradient_at(x) - gradient).norm(), 1e-7 * (1 + gradient.norm()));
-        EXPECT_LT((EdgeMollifier(s, x).hessian() - hessian).norm(), 1e-6 * (1 + hessian.norm()));
+        const Vec12 expected_gradient = difference_gradient([](const Stencil& y) { return value_at(y); }, x, 1e-6);
+        const Mat12 expected_hessian = difference_hessian(gradient_at, x, 1e-6);
+        EXPECT_LT((gradient_at(x) - expected_gradient).norm(), 1e-7 * (1 + expected_gradient.norm()));
+        EXPECT_LT((hessian(m.function(), m.separations()) - expected_hessian).norm(),
+                  1e-6 * (1 + expected_hessian.norm()));
         for (int i = 0; i < 4; ++i)
             ends_seen |= squared_distance_end(x, i) < 4 * s.squared_distance ? 1 << i : 0;
     }

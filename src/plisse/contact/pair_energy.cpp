@@ -1,7 +1,5 @@
 #include <plisse/contact/pair_energy.h>
 
-#include <Eigen/Eigenvalues>
-
 #include <plisse/geometry/barrier.h>
 #include <plisse/geometry/mollifier.h>
 
@@ -21,77 +19,26 @@ double curvature_in_distance(const Barrier& b, double squared_distance) {
     return std::max(0.0, 4 * b.second * squared_distance + 2 * b.first);
 }
 
-/// (w x n)(w x n)^T times a factor.
-Mat12 rank_one(double factor, const Vec4& w, const Vec3& n) {
-    Vec12 direction;
-    Eigen::Map<Stencil>(direction.data()) = n * w.transpose();
-    return factor * direction * direction.transpose();
+/// m b as a function of squared distances, the first of which is b's.
+DistanceFunction product(double m, DistanceFunction by_distances, const Barrier& b) {
+    const decltype(DistanceFunction::first) slopes = by_distances.first;
+    by_distances.first *= b.value;
+    by_distances.second *= b.value;
+    by_distances.first[0] += m * b.first;
+    by_distances.second.row(0) += b.first * slopes.transpose();
+    by_distances.second.col(0) += b.first * slopes;
+    by_distances.second(0, 0) += m * b.second;
+    return by_distances;
 }
 
-/// Turns the two orthonormal tangents in their plane until the slides are at right angles to each other too. Terms that
-/// are projected one by one then depend on the points only, not on the order they come in.
-void make_slides_orthogonal(Separation& s) {
-    const double difference = s.slides.col(0).squaredNorm() - s.slides.col(1).squaredNorm();
-    const double twice_product = 2 * s.slides.col(0).dot(s.slides.col(1));
-    const double length = std::hypot(difference, twice_product);
-    if (length == 0)
-        return;
-    const double cosine = std::sqrt(0.5 * (1 + difference / length));
-    const double sine = std::copysign(std::sqrt(0.5 * std::max(0.0, 1 - difference / length)), twice_product);
-    Mat2 turn;
-    turn << cosine, -sine, sine, cosine;
-    s.slides *= turn;
-    s.tangents *= turn;
-}
-
-/// A bound on the Hessian of the barrier alone, term by term.
-Mat12 projected_barrier(const Separation& separation, const Barrier& b) {
-    Separation s = with_orthonormal_tangents(separation);
-    if (s.freedom == 2)
-        make_slides_orthogonal(s);
-    const double d = std::sqrt(s.squared_distance), c = -2 * b.first;
-    const Vec3 n = s.offset / d;
-    Mat12 result = rank_one(curvature_in_distance(b, s.squared_distance), s.weights, n);
-    const double w = s.weights.norm();
-    for (int k = 0; k < s.freedom; ++k) {
-        // In the orthonormal directions v_k x n and w x t_k the term is c [[p^2, p w], [p w, 0]].
-        const double v = s.slides.col(k).norm(), p = d * v;
-        const double eigenvalue = 0.5 * (p * p + p * std::sqrt(p * p + 4 * w * w));
-        const double length_squared = eigenvalue * eigenvalue + p * p * w * w;
-        Vec12 direction; // of the eigenvector (eigenvalue, p w)
-        Eigen::Map<Stencil>(direction.data()) =
-            (eigenvalue / v) * n * s.slides.col(k).transpose() + p * s.tangents.col(k) * s.weights.transpose();
-        result.noalias() += (c * eigenvalue / length_squared * direction) * direction.transpose();
-    }
-    return result;
-}
-
-/// Positive part of a translation-invariant 12x12 matrix, found in nine dimensions.
-Mat12 translation_free_positive_part(const Mat12& hessian) {
-    Eigen::Matrix<double, 12, 9> basis;
-    const std::array<Vec4, 3> relative = {Vec4(.5, .5, -.5, -.5), Vec4(.5, -.5, .5, -.5), Vec4(.5, -.5, -.5, .5)};
-    for (int k = 0; k < 3; ++k)
-        for (int i = 0; i < 4; ++i)
-            basis.block<3, 3>(3 * i, 3 * k) = relative[static_cast<std::size_t>(k)][i] * Mat3::Identity();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(basis.transpose() * hessian * basis);
-    Mat12 result = Mat12::Zero();
-    for (int i = 8; i >= 0 && eigen.eigenvalues()[i] > 0; --i) {
-        const Vec12 direction = basis * eigen.eigenvectors().col(i);
-        result.noalias() += (eigen.eigenvalues()[i] * direction) * direction.transpose();
-    }
-    return result;
-}
-
-/// Of the energy without mollifier.
-Mat12 barrier_hessian(const Separation& separation, const Barrier& b) {
-    const Vec12 by_distance = squared_distance_gradient(separation);
-    return b.second * by_distance * by_distance.transpose() + b.first * squared_distance_hessian(separation);
-}
-
-Mat12 mollified_hessian(const EdgeMollifier& mollifier, const Separation& separation, const Barrier& b) {
-    const Mat12 mixed = b.first * mollifier.gradient() * squared_distance_gradient(separation).transpose();
-    return b.value * mollifier.hessian() + mixed + mixed.transpose() +
-           mollifier.value() * barrier_hessian(separation, b);
+/// Calls use(function, separations) with the energy as a function of squared distances.
+template <typename Use>
+auto use_energy(const PairParameters& parameters, const Separation& separation, const Stencil& x, const Use& use) {
+    const Barrier b = scaled_barrier(parameters, separation.squared_distance);
+    if (parameters.ends == 0)
+        return use(product(1, DistanceFunction(1), b), std::span(&separation, 1));
+    const EdgeMollifier mollifier(separation, x, parameters.ends);
+    return use(product(mollifier.value(), mollifier.function(), b), mollifier.separations());
 }
 
 double mollifier_value(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
@@ -113,36 +60,23 @@ double pair_normal_force(const PairParameters& parameters, const Separation& sep
 }
 
 Vec12 pair_gradient(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    const Vec12 by_distance = b.first * squared_distance_gradient(separation);
-    if (parameters.ends == 0)
-        return by_distance;
-    const EdgeMollifier mollifier(separation, x, parameters.ends);
-    return mollifier.value() * by_distance + b.value * mollifier.gradient();
+    return use_energy(parameters, separation, x, gradient);
 }
 
 Mat12 pair_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    if (parameters.ends == 0)
-        return barrier_hessian(separation, b);
-    return mollified_hessian(EdgeMollifier(separation, x, parameters.ends), separation, b);
+    return use_energy(parameters, separation, x, hessian);
 }
 
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
-    const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    if (parameters.scale < 0)
-        return translation_free_positive_part(barrier_hessian(separation, b));
-    if (parameters.ends != 0)
-        if (const EdgeMollifier mollifier(separation, x, parameters.ends); !mollifier.is_one())
-            return translation_free_positive_part(mollified_hessian(mollifier, separation, b));
-    return projected_barrier(separation, b);
+    return use_energy(parameters, separation, x, projected_hessian);
 }
 
 Mat12 pair_gauss_newton_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x) {
     const double m = mollifier_value(parameters, separation, x);
     const Barrier b = scaled_barrier(parameters, separation.squared_distance);
-    return rank_one(m * curvature_in_distance(b, separation.squared_distance), separation.weights,
-                    separation.offset.normalized());
+    Vec12 direction;
+    Eigen::Map<Stencil>(direction.data()) = separation.offset.normalized() * separation.weights.transpose();
+    return m * curvature_in_distance(b, separation.squared_distance) * direction * direction.transpose();
 }
 
 } // namespace plisse

@@ -26,12 +26,7 @@ Vec12 pair_gradient(const PairParameters& parameters, const Separation& separati
 /// d2E/dX2, N/m.
 Mat12 pair_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
-/// A positive semi-definite matrix close to d2E/dX2 and not below it. With orthonormal tangents t_k, slides v_k,
-/// weights w, unit offset n and distance d, the Hessian without mollifier is (x is Kronecker's product)
-///   E''(d) (w x n)(w x n)^T + c sum_k [d (w x t_k)(v_k x n)^T + its transpose + d^2 (v_k x n)(v_k x n)^T]
-///   - c (w x m)(w x m)^T summed over the directions m across n and the tangents,      c = -2 dE/dD >= 0.
-/// Each term is projected by itself: the first is positive, the last negative, and those of the sum are 2x2 matrices.
-/// With a mollifier below 1, or a scale below 0, it is the nearest semi-definite matrix.
+/// A positive semi-definite matrix close to d2E/dX2 and not below it: see projected_hessian.
 Mat12 pair_projected_hessian(const PairParameters& parameters, const Separation& separation, const Stencil& x);
 
 /// The part of d2E/dX2 that is left when the mollifier and the direction between the closest points stand still:

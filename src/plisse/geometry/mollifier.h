@@ -1,6 +1,6 @@
 #pragma once
 
-#include <plisse/geometry/distance.h>
+#include <plisse/geometry/distance_function.h>
 
 namespace plisse {
 
@@ -13,27 +13,26 @@ namespace plisse {
 /// infinity as D does to 0 still does so times m, unless a D_i tends to 0 too.
 class EdgeMollifier {
 public:
-    /// s = separate_edges(x), and must outlive the object. ends: bit i is set for the ends that count.
+    /// s = separate_edges(x). ends: bit i is set for the ends that count.
     EdgeMollifier(const Separation& s, const Stencil& x, std::uint8_t ends = 0b1111);
 
     double value() const { return value_; } ///< m
-    bool is_one() const { return count_ == 0; }
-    Vec12 gradient() const; ///< dm/dX, 1/m
-    Mat12 hessian() const;  ///< d2m/dX2, 1/m^2
+    /// What m depends on: first D, then the D_i of the ends that lower it.
+    std::span<const Separation> separations() const { return {separations_.data(), at(count_ + 1)}; }
+    /// m as a function of these.
+    DistanceFunction function() const;
 
 private:
-    /// An end that lowers m.
-    struct End {
-        Separation separation;
-        double ratio = 0;                        ///< r_i
-        double value = 0, first = 0, second = 0; ///< 1 - q_i^3 and its derivatives by r_i
+    /// The factor 1 - q^3 of an end as a function of its ratio r.
+    struct Factor {
+        double value, first, second;
     };
+    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     double product_without(int i, int j) const;
-    Vec12 ratio_gradient(const End& end) const;
 
-    const Separation& separation_;
-    std::array<End, 4> ends_;
-    int count_ = 0;
+    std::array<Separation, DistanceFunction::most> separations_;
+    std::array<Factor, DistanceFunction::most - 1> factors_; ///< of separations_[1], ...
+    int count_ = 0;                                          ///< ends that lower m
     double value_ = 1;
 };
 
