@@ -213,5 +213,12 @@ TEST(Distance, ValueAndGradientAreContinuousAcrossFeatures) {
     EXPECT_GT(changes, 50);
 }
 
+TEST(Separation, MidpointIsHalfwayBetweenTheClosestPoints) {
+    const Stencil edges = stencil({-1, 0.2, 0}, {1, 0.2, 0}, {0.5, 0, -1}, {0.5, 0, 2});
+    EXPECT_LT((midpoint(separate_edges(edges), edges) - Vec3(0.5, 0.1, 0)).norm(), 1e-15);
+    const Stencil point = stencil({3, 0.4, 0}, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
+    EXPECT_LT((midpoint(separate_point_triangle(point), point) - Vec3(2.5, 0.2, 0)).norm(), 1e-15);
+}
+
 } // namespace
 } // namespace plisse

@@ -24,9 +24,9 @@ TEST(Readme, ItsFirstSceneRuns) {
     const std::string scene = first_block(readme.str(), "json");
     ASSERT_FALSE(scene.empty());
 
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "plisse-readme";
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    std::string pattern = testing::TempDir() + "plisse-readme-XXXXXX";
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    const std::filesystem::path folder = pattern;
     std::ofstream(folder / "first.json") << scene;
     const std::string command = std::string(PLISSE_PROGRAM) + " run " + (folder / "first.json").string() + " -o " +
                                 (folder / "out").string() + " --quiet";

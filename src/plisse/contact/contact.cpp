@@ -233,10 +233,8 @@ double Contact::max_step(const Positions& x, const Positions& d) {
 LimitingPair Contact::State::limiting_pair(StencilKind kind, int candidate, const Positions& x, double step) const {
     const Stencil stencil = gather(x, candidates.vertices(kind, candidate));
     const Separation separation = separate(kind, stencil);
-    Vec3 place = Vec3::Zero(); // the weights are those of the difference: of either sign, and 1 in all on each side
-    for (int i = 0; i < 4; ++i)
-        place += 0.5 * std::abs(separation.weights[i]) * stencil.col(i);
-    return {kind, candidates.primitives(kind, candidate), step, separation.offset.norm(), place};
+    return {kind, candidates.primitives(kind, candidate), step, separation.offset.norm(),
+            midpoint(separation, stencil)};
 }
 
 std::optional<LimitingPair> Contact::limiting_pair(const Positions& x, const Positions& d) {

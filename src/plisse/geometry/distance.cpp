@@ -228,6 +228,11 @@ Vec12 squared_distance_gradient(const Separation& separation) {
     return gradient;
 }
 
+Vec3 midpoint(const Separation& separation, const Stencil& x) {
+    // The weights are those of the difference: of either sign, and 1 in all on each side.
+    return 0.5 * x * separation.weights.cwiseAbs();
+}
+
 Separation with_orthonormal_tangents(const Separation& separation) {
     Separation s = separation;
     for (int k = 0; k < s.freedom; ++k) {

@@ -63,6 +63,9 @@ Vec12 squared_distance_gradient(const Separation& separation);
 /// slides; x is Kronecker's product).
 Mat12 squared_distance_hessian(const Separation& separation);
 
+/// The place halfway between the two closest points of a stencil.
+Vec3 midpoint(const Separation& separation, const Stencil& x);
+
 /// The same separation with orthonormal tangents.
 Separation with_orthonormal_tangents(const Separation& separation);
 

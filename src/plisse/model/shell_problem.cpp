@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <plisse/base/parallel.h>
+#include <plisse/contact/candidates.h>
 #include <plisse/geometry/triangle_motion.h>
 #include <plisse/spatial/box.h>
 
@@ -501,9 +502,7 @@ TightestPair ShellProblem::tightest_pair(const VecX& x) {
         }
     }
     if (found) {
-        Vec3 place = Vec3::Zero();
-        for (int i = 0; i < 4; ++i)
-            place += 0.5 * std::abs(found->separation.weights[i]) * points.col(found->vertices[at(i)]);
+        const Vec3 place = midpoint(found->separation, gather(points, found->vertices));
         const double distance = std::sqrt(found->separation.squared_distance);
         tightest.words = in_words({found->kind, found->primitives, 1, distance, place});
     }
