@@ -23,8 +23,8 @@ Vec12 gradient(const DistanceFunction& f, std::span<const Separation> separation
 /// d2f/dX2 = sum_a f_a d2D_a/dX2 + sum_ab f_ab dD_a/dX dD_b/dX^T, while the closest features stay the same.
 Mat12 hessian(const DistanceFunction& f, std::span<const Separation> separations);
 
-/// A positive semi-definite matrix not below d2f/dX2 and close to it, in closed form. With orthonormal tangents t_k,
-/// slides v_k, weights w, unit offset n and distance d = sqrt(D_a) (x is Kronecker's product)
+/// A positive semi-definite matrix not below d2f/dX2 and close to it, by eigenvalues of nothing larger than f_ab. With
+/// orthonormal tangents t_k, slides v_k, weights w, unit offset n and distance d = sqrt(D_a) (x is Kronecker's product)
 ///   f_a d2D_a/dX2 = 2 f_a [(w x n)(w x n)^T + sum_m (w x m)(w x m)^T
 ///                          - sum_k (d (w x t_k)(v_k x n)^T + its transpose + d^2 (v_k x n)(v_k x n)^T)]
 /// with the directions m across n and the tangents. The first term, along dD_a/dX, joins the second derivatives, which
