@@ -89,17 +89,13 @@ private:
                     filter_pair(kind, i, query, length);
     }
 
-    double kept_distance(double distance, double least) const {
-        return least + std::min(run_.options.ccd_ratio * (distance - least), run_.options.distance);
-    }
-
     void filter_pair(StencilKind kind, int candidate, const StepQuery& query, double& length) {
         PairWork& work = work_.of_kind[static_cast<std::size_t>(kind)];
         const auto vertices = candidates_.vertices(kind, candidate);
         MovingPair pair{gather(query.x, vertices), gather(query.d, vertices), 0, 0, length};
         const auto is_safe = [&](double distance, double least) {
             pair.distance = distance;
-            pair.kept = kept_distance(distance, least);
+            pair.kept = run_.options.kept_distance(distance, least);
             work.screened.push_back(pair);
             return keeps_apart(kind, pair.x, pair.d, pair.distance, pair.kept, length);
         };

@@ -45,5 +45,13 @@ TEST(PairRange, EnforcesAShareOfTheThickness) {
     expect_range(pair_range(options(1, 4, 0), true, 1), 0.5, 0, 0.75);
 }
 
+TEST(ContactOptions, KeepsAShareOfTheRoomAPairHasButNotMoreThanTheContactDistance) {
+    const ContactOptions near_or_far = options(0.5, 4); // keeps a tenth
+    EXPECT_DOUBLE_EQ(near_or_far.kept_distance(6, 4), 4.2);
+    EXPECT_DOUBLE_EQ(near_or_far.kept_distance(4, 4), 4);
+    EXPECT_DOUBLE_EQ(near_or_far.kept_distance(100, 4), 4.5);
+    EXPECT_DOUBLE_EQ(near_or_far.kept_distance(2, 0), 0.2);
+}
+
 } // namespace
 } // namespace plisse

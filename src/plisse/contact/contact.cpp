@@ -37,10 +37,6 @@ struct Contact::State {
     /// sweep_start along d, whose boxes reach to sweep_end.
     double safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const;
     double safe_length_of(StencilKind kind, int candidate, const Positions& x, const Positions& d, double length) const;
-    /// Of a pair's distance, what it keeps during a step.
-    double kept_distance(double distance, double least) const {
-        return least + std::min(options.ccd_ratio * (distance - least), options.distance);
-    }
     LimitingPair limiting_pair(StencilKind kind, int candidate, const Positions& x, double step) const;
     /// Adds block by block what pairs[begin ...] contribute, the results being in `hessians`.
     void scatter_hessians(std::size_t begin, std::size_t count, NewtonSystem& system) const;
@@ -84,7 +80,8 @@ double Contact::State::safe_length_of(StencilKind kind, int candidate, const Pos
     const auto vertices = candidates.vertices(kind, candidate);
     const Stencil at_x = gather(x, vertices), motion = gather(d, vertices);
     const auto is_safe = [&](double distance, double least) {
-        return sweeps_begin_at_x && keeps_apart(kind, at_x, motion, distance, kept_distance(distance, least), length);
+        return sweeps_begin_at_x &&
+               keeps_apart(kind, at_x, motion, distance, options.kept_distance(distance, least), length);
     };
     // What is kept of a longer distance, or from a lesser least one, leaves more room.
     if (is_safe(candidates.least_distance(kind, candidate, start_drift), options.enforced * options.thickness))
@@ -97,7 +94,7 @@ double Contact::State::safe_length_of(StencilKind kind, int candidate, const Pos
     const double distance = std::sqrt(squared_distance(kind, at_x));
     if (is_safe(distance, least))
         return length;
-    return safe_step(kind, start, motion, kept_distance(distance, least), length);
+    return safe_step(kind, start, motion, options.kept_distance(distance, least), length);
 }
 
 double Contact::State::safe_length(StencilKind kind, const Positions& x, const Positions& d, double length) const {

@@ -19,6 +19,10 @@ struct ContactOptions {
 
     /// The largest activation distance of any pair, m.
     double reach() const { return thickness + distance; }
+    /// Of the distance of a pair that stays further apart than `least`, what it keeps during a step, m.
+    double kept_distance(double pair_distance, double least) const {
+        return least + std::min(ccd_ratio * (pair_distance - least), distance);
+    }
 };
 
 /// Distances of one pair of primitives, m.
