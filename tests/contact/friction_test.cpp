@@ -31,7 +31,7 @@ struct Rub {
     Friction friction(double mu, double other = 0) const { return {mesh, {slip, {other, mu, mu, other}}}; }
     Friction lagged(double mu, const Positions& reference) {
         Friction result = friction(mu);
-        result.begin({reference, {}, false});
+        result.begin({reference, {}});
         result.lag(contact->active_pairs(scene.x), scene.x);
         return result;
     }
@@ -126,7 +126,7 @@ TEST(Friction, MixesForcesByTheirShares) {
     };
     const auto lagged_at = [&](const Positions& x) {
         Friction friction = rub.friction(0.5);
-        friction.begin({reference, {}, false});
+        friction.begin({reference, {}});
         friction.lag(rub.contact->active_pairs(x), x);
         return friction;
     };
@@ -144,7 +144,7 @@ TEST(Friction, IsNotFeltWhereNoCoefficientSays) {
     EXPECT_FALSE(rub.friction(0).possible());
     EXPECT_TRUE(rub.friction(0.1).possible());
     Friction self_only = rub.friction(0, 0.5);
-    self_only.begin({rub.shifted(Vec3(0.1, 0, 0)), {}, false});
+    self_only.begin({rub.shifted(Vec3(0.1, 0, 0)), {}});
     self_only.lag(rub.contact->active_pairs(rub.scene.x), rub.scene.x);
     EXPECT_EQ(self_only.value(rub.scene.x), 0);
 }
@@ -155,7 +155,7 @@ TEST(Friction, RemembersWhereContactsStickOverSteps) {
     // The force of two edges changes as they move along each other.
     std::erase_if(pairs, [](const ActivePair& pair) { return pair.kind == StencilKind::edge_edge; });
     Friction friction = rub.friction(0.3);
-    friction.begin({rub.scene.x, {}, false});
+    friction.begin({rub.scene.x, {}});
     friction.lag(pairs, rub.scene.x);
     friction.remember(pairs, rub.scene.x);
     // A slip of five times e to a new place with the same contacts: what is beyond e is given up, the force stays.
@@ -175,11 +175,79 @@ TEST(Friction, RemembersWhereContactsStickOverSteps) {
     // Back by half of e: a contact that had kept its first reference would still pull with all its force.
     const Positions back = force_at(next, rub.shifted(motion - 0.5 * slip * Vec3(0, 0, 1)));
     EXPECT_NEAR(back.norm() / after.norm(), 0.75, 0.02); // f1(e/2)
-    // A contact that nobody knew starts without a force.
-    Friction fresh = rub.friction(0.3);
-    fresh.begin({rub.scene.x, {}, true});
-    fresh.lag(pairs, rub.shifted(motion));
-    EXPECT_LT(force_at(fresh, rub.shifted(motion)).norm(), 1e-12 * before.norm());
+}
+
+Positions force_of(const Friction& friction, const Positions& x) {
+    Positions gradient = Positions::Zero(3, x.cols());
+    friction.add_gradient(x, gradient);
+    return gradient;
+}
+
+TEST(Friction, ForgetsTheWayOnWhichContactsHaveCome) {
+    Rub rub;
+    const Positions& x = rub.scene.x;
+    Friction friction = rub.friction(0.3);
+    friction.begin({rub.shifted(Vec3(-0.1, 0.3, -0.05)), {}});
+    friction.remember(rub.contact->active_pairs(x), x);
+    friction.lag(rub.contact->active_pairs(x), x);
+    const Positions before = force_of(friction, x);
+    // All turn a little together, and forces with them.
+    const Mat3 turn = Eigen::AngleAxisd(0.02, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const Positions turned = turn * x;
+    friction.lag(rub.contact->active_pairs(turned), turned);
+    EXPECT_LT((force_of(friction, turned) - turn * before).norm(), 0.2 * before.norm()); // a gap's turn is a slip
+}
+
+ActivePair point_on_a_triangle(Rub& rub) {
+    for (const ActivePair& pair : rub.contact->active_pairs(rub.scene.x))
+        if (pair.kind == StencilKind::point_triangle && pair.parameters.scale > 0)
+            return pair;
+    ADD_FAILURE() << "no such pair";
+    return {};
+}
+
+TEST(Friction, GoesOnWhereAContactSlidesToOtherPrimitives) {
+    Rub rub;
+    const ActivePair pair = point_on_a_triangle(rub);
+    const auto [point, face] = pair.primitives;
+    const auto force_with_memory = [&](StencilKind kind, int first, int second, const Vec3& elastic_slip) {
+        Friction friction = rub.friction(0.3);
+        friction.begin({rub.scene.x, {{kind, {first, second}, elastic_slip}}});
+        friction.lag({&pair, 1}, rub.scene.x);
+        return force_of(friction, rub.scene.x);
+    };
+    const Vec3 u(0.5 * slip, 0, 0.2 * slip);
+    const Positions known = force_with_memory(StencilKind::point_triangle, point, face, u);
+    EXPECT_GT(known.norm(), 0);
+    int neighbours = 0, strangers = 0;
+    for (int f = 0; f < static_cast<int>(rub.mesh.faces.size()); ++f) {
+        if (f == face || rub.mesh.has_corner(f, point))
+            continue;
+        double shared = 0;
+        for (int i = 1; i < 4; ++i)
+            if (rub.mesh.has_corner(f, pair.vertices[static_cast<std::size_t>(i)]))
+                shared -= pair.separation.weights[i];
+        const Positions force = force_with_memory(StencilKind::point_triangle, point, f, u);
+        if (shared > 0) {
+            ++neighbours;
+            EXPECT_EQ(force, known);
+        } else {
+            ++strangers;
+            EXPECT_EQ(force.norm(), 0);
+        }
+    }
+    EXPECT_GT(neighbours, 2);
+    EXPECT_GT(strangers, 2);
+    // The same place seen as two edges, of which the point's is the second: the motion is the other way round.
+    int of_point = -1, of_face = -1;
+    for (int e = 0; e < static_cast<int>(rub.mesh.edges.size()); ++e) {
+        const Edge& edge = rub.mesh.edges[static_cast<std::size_t>(e)];
+        if (edge[0] == point || edge[1] == point)
+            of_point = e;
+        if (rub.mesh.has_corner(face, edge[0]) && rub.mesh.has_corner(face, edge[1]))
+            of_face = e;
+    }
+    EXPECT_EQ(force_with_memory(StencilKind::edge_edge, of_face, of_point, -u), known);
 }
 
 } // namespace

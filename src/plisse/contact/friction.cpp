@@ -47,6 +47,29 @@ std::vector<double> normal_forces(std::span<const ActivePair> active, const Posi
     return forces;
 }
 
+/// How many of a stencil's vertices belong to its first primitive.
+std::size_t first_count(StencilKind kind) {
+    return kind == StencilKind::point_triangle ? 1 : 2;
+}
+
+/// How much of the place of a pair, both sides of it, lies on the primitives of a known one: 2 is all.
+struct SharedPlace {
+    double share = 0;
+    double sign = 1; ///< -1 where sides are exchanged
+};
+
+SharedPlace shared_place(const ActivePair& pair, StencilKind kind, const std::array<int, 4>& known) {
+    std::array<std::array<double, 2>, 2> shares{}; // of the pair's side, on the known one's side
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j)
+            if (pair.vertices[i] == known[j])
+                shares[i >= first_count(pair.kind)][j >= first_count(kind)] +=
+                    std::abs(pair.separation.weights[static_cast<int>(i)]);
+    const auto of_both = [](double a, double b) { return a > 0 && b > 0 ? a + b : 0; };
+    const double straight = of_both(shares[0][0], shares[1][1]), exchanged = of_both(shares[0][1], shares[1][0]);
+    return straight >= exchanged ? SharedPlace{straight, 1} : SharedPlace{exchanged, -1};
+}
+
 bool comes_before(const RubbingPair& a, const RubbingPair& b) {
     return std::tie(a.kind, a.primitives) < std::tie(b.kind, b.primitives);
 }
@@ -67,24 +90,54 @@ bool Friction::rubs(const ActivePair& pair) const {
     return pair.parameters.scale > 0 && coefficient(pair) > 0;
 }
 
-/// What a pair has given up so far.
-Vec3 Friction::slipped(const ActivePair& pair, const Positions& x) const {
+void Friction::begin(FrictionMemory memory) {
+    memory_ = std::move(memory);
+    pairs_at_.clear();
+    for (int p = 0; p < static_cast<int>(memory_.pairs.size()); ++p)
+        for (const int vertex : vertices(memory_.pairs[at(p)]))
+            pairs_at_.emplace_back(vertex, p);
+    std::sort(pairs_at_.begin(), pairs_at_.end());
+}
+
+std::array<int, 4> Friction::vertices(const RubbingPair& pair) const {
+    const auto [first, second] = pair.primitives;
+    if (pair.kind == StencilKind::point_triangle) {
+        const auto& [a, b, c] = mesh_.faces[at(second)];
+        return {first, a, b, c};
+    }
+    const Edge &a = mesh_.edges[at(first)], &b = mesh_.edges[at(second)];
+    return {a[0], a[1], b[0], b[1]};
+}
+
+Vec3 Friction::elastic_slip(const ActivePair& pair) const {
     const RubbingPair wanted{pair.kind, pair.primitives};
     const auto known = std::lower_bound(memory_.pairs.begin(), memory_.pairs.end(), wanted, comes_before);
     if (known != memory_.pairs.end() && !comes_before(wanted, *known))
-        return known->slipped;
-    if (!memory_.knows_pairs)
-        return Vec3::Zero();
-    return (gather(x, pair.vertices) - gather(memory_.reference, pair.vertices)) * pair.separation.weights;
+        return known->elastic_slip;
+    constexpr double least_share = 1; // that of one side alone
+    double largest = least_share;
+    Vec3 result = Vec3::Zero();
+    for (std::size_t i = 0; i < first_count(pair.kind); ++i) {
+        const std::pair<int, int> first{pair.vertices[i], 0};
+        for (auto entry = std::lower_bound(pairs_at_.begin(), pairs_at_.end(), first);
+             entry != pairs_at_.end() && entry->first == pair.vertices[i]; ++entry) {
+            const RubbingPair& neighbour = memory_.pairs[at(entry->second)];
+            const SharedPlace place = shared_place(pair, neighbour.kind, vertices(neighbour));
+            if (place.share > largest) {
+                largest = place.share;
+                result = place.sign * neighbour.elastic_slip;
+            }
+        }
+    }
+    return result;
 }
 
-Friction::Contact Friction::contact(const ActivePair& pair, const Positions& x) const {
+Friction::Contact Friction::contact(const ActivePair& pair) const {
     Contact contact;
     contact.vertices = pair.vertices;
     contact.weights = pair.separation.weights;
     contact.normal = pair.separation.offset.normalized();
-    contact.slipped = slipped(pair, x);
-    contact.origin = gather(memory_.reference, pair.vertices) * contact.weights + contact.slipped;
+    contact.origin = gather(memory_.reference, pair.vertices) * contact.weights - elastic_slip(pair);
     return contact;
 }
 
@@ -109,7 +162,7 @@ void Friction::lag(std::span<const ActivePair> active, const Positions& x, doubl
     for (std::size_t p = 0; p < active.size(); ++p) {
         if (!rubs(active[p]))
             continue;
-        contacts_.push_back(contact(active[p], x));
+        contacts_.push_back(contact(active[p]));
         contacts_.back().limit = share * grip_ * coefficient(active[p]) * forces[p];
         contacts_.back().share = share;
     }
@@ -122,14 +175,12 @@ void Friction::remember(std::span<const ActivePair> active, const Positions& x) 
     for (const ActivePair& pair : active) {
         if (!rubs(pair))
             continue;
-        const Contact now = contact(pair, x);
-        const Vec3 u = sliding(now, x);
-        const double given_up = std::max(0.0, 1 - options_.slip / u.norm()); // -infinity without motion
-        pairs.push_back({pair.kind, pair.primitives, now.slipped + given_up * u});
+        const Vec3 u = sliding(contact(pair), x);
+        const double kept = std::min(1.0, options_.slip / u.norm()); // all where there is no motion
+        pairs.push_back({pair.kind, pair.primitives, kept * u});
     }
     std::sort(pairs.begin(), pairs.end(), comes_before);
-    memory_.pairs = std::move(pairs);
-    memory_.knows_pairs = true;
+    begin({x, std::move(pairs)});
 }
 
 double Friction::value(const Positions& x) const {

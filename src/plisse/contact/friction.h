@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <plisse/contact/candidates.h>
@@ -14,24 +15,23 @@ struct FrictionOptions {
     std::vector<double> coefficients;
 };
 
-/// A contact that has been rubbing, known by its primitives.
+/// A contact that rubs, known by its primitives.
 struct RubbingPair {
     StencilKind kind = StencilKind::point_triangle;
     std::array<int, 2> primitives{};
-    Vec3 slipped = Vec3::Zero(); ///< m: the part of its relative motion that it has given up for good
+    Vec3 elastic_slip = Vec3::Zero(); ///< m, at most FrictionOptions::slip long: the relative motion that it resists
 };
 
 /// What contacts remember from one step to the next while a body settles: measured from the last state only, each step
 /// would forget its friction, and everything would creep.
 struct FrictionMemory {
-    Positions reference{3, 0};      ///< where relative motion counts from; empty: from where the next step begins
+    Positions reference{3, 0};      ///< where further motion counts from; empty: from where the next step begins
     std::vector<RubbingPair> pairs; ///< in the order of kind, then primitives
-    bool knows_pairs = false;       ///< false: every contact counts from the reference
 };
 
 /// Coulomb friction with lagged normal forces and normals (IPC, Li et al. 2020, section 5). A contact of weights w,
 /// normal n and normal force N, all held since the last lag(), whose primitives have moved relative to each other by
-/// u = (1 - n n^T) (sum_i w_i (x_i - reference_i) - slipped), has the potential mu N f0(|u|),
+/// u = (1 - n n^T) (sum_i w_i (x_i - reference_i) + elastic_slip), has the potential mu N f0(|u|),
 ///   f0(y) = y^2/e - y^3/(3 e^2) for y < e, else y - e/3,      f1(y) = f0'(y) = 2 y/e - y^2/e^2, else 1,
 /// e being options.slip: friction grows from 0 to mu N over e and opposes the motion. It is convex in x.
 class Friction {
@@ -43,15 +43,16 @@ public:
     bool possible() const { return possible_; }
 
     /// Starts a step whose relative motion counts from memory.reference.
-    void begin(FrictionMemory memory) { memory_ = std::move(memory); }
+    void begin(FrictionMemory memory);
     const FrictionMemory& memory() const { return memory_; }
 
     /// Takes normal forces and normals from the pairs that are active at x. A grip above 1 multiplies the forces: where
-    /// they have yet to build up, a step would slide on what there is of them. A contact that memory() does not know
-    /// of, where it knows contacts, starts without a force. A share below 1 mixes: the rest stays as it was.
+    /// they have yet to build up, a step would slide on what there is of them. A share below 1 mixes: the rest stays as
+    /// it was. A contact that memory() does not know takes over from the known one on whose place it is, as where a
+    /// point slides over an edge; elsewhere its motion counts from memory().reference.
     void lag(std::span<const ActivePair> active, const Positions& x, double grip = 1, double share = 1);
-    /// Brings memory() up to date with the pairs that are active at x, where a step has ended: a contact that has moved
-    /// on by more than e gives up the rest, so that it keeps its force and sticks where it is.
+    /// Makes x, where a step has ended, the reference, and memory() know the pairs that are active there with their
+    /// motion up to e: a contact that has moved further gives up the rest, so that it keeps its force and sticks.
     void remember(std::span<const ActivePair> active, const Positions& x);
     /// Whether the forces of the last lag() were multiplied.
     bool grips() const { return grip_ > 1; }
@@ -70,21 +71,22 @@ private:
         std::array<int, 4> vertices;
         Vec4 weights;
         Vec3 normal;
-        Vec3 slipped;
-        Vec3 origin;      ///< m: of the relative motion, sum_i w_i reference_i + slipped
+        Vec3 origin;      ///< m: of the relative motion, sum_i w_i reference_i - elastic_slip
         double limit = 0; ///< mu N times its share, N
         double share = 1; ///< of the mixture
     };
     double coefficient(const ActivePair& pair) const;
     bool rubs(const ActivePair& pair) const;
-    Contact contact(const ActivePair& pair, const Positions& x) const;
-    Vec3 slipped(const ActivePair& pair, const Positions& x) const;
+    Contact contact(const ActivePair& pair) const;
+    std::array<int, 4> vertices(const RubbingPair& pair) const;
+    Vec3 elastic_slip(const ActivePair& pair) const;
     Vec3 sliding(const Contact& contact, const Positions& x) const;
 
     const CollisionMesh& mesh_;
     FrictionOptions options_;
     bool possible_;
     FrictionMemory memory_;
+    std::vector<std::pair<int, int>> pairs_at_; ///< vertex and number of a known pair, sorted
     std::vector<Contact> contacts_;
     double grip_ = 1;
 };

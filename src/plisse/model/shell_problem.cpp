@@ -204,7 +204,7 @@ void ShellProblem::build_system(const std::vector<std::uint8_t>& prescribed) {
 
 void ShellProblem::begin_step(const Positions& current, const Positions& anchor, double t, double h, bool is_first) {
     set_step(current, anchor, t, h);
-    begin_friction(current, {current, {}, false}, is_first);
+    begin_friction(current, {current, {}}, is_first);
 }
 
 void ShellProblem::begin_settling_step(const Positions& current, double t, double h, const FrictionMemory& memory) {

@@ -15,13 +15,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int format = 2;
+
 std::string state_file_name(int number) {
     return fmt::format("state-{}.bin", number);
 }
 
 /// The arrays of a checkpoint's state, as its file holds them one after another.
 struct State {
-    Positions positions, velocity, friction_reference, slipped;
+    Positions positions, velocity, friction_reference, elastic_slip;
     Eigen::Matrix<int, 3, Eigen::Dynamic> rubbing; ///< kind and primitives
 
     template <typename Visit>
@@ -29,7 +31,7 @@ struct State {
         visit(positions);
         visit(velocity);
         visit(friction_reference);
-        visit(slipped);
+        visit(elastic_slip);
         visit(rubbing);
     }
 };
@@ -37,11 +39,11 @@ struct State {
 State state_of(const Checkpoint& c) {
     State state{c.positions, c.velocity, c.friction.reference, {}, {}};
     const auto pairs = static_cast<Eigen::Index>(c.friction.pairs.size());
-    state.slipped.resize(3, pairs);
+    state.elastic_slip.resize(3, pairs);
     state.rubbing.resize(3, pairs);
     for (Eigen::Index p = 0; p < pairs; ++p) {
         const RubbingPair& pair = c.friction.pairs[static_cast<std::size_t>(p)];
-        state.slipped.col(p) = pair.slipped;
+        state.elastic_slip.col(p) = pair.elastic_slip;
         state.rubbing.col(p) << static_cast<int>(pair.kind), pair.primitives[0], pair.primitives[1];
     }
     return state;
@@ -51,7 +53,7 @@ void restore(State state, Checkpoint& c) {
     for (Eigen::Index p = 0; p < state.rubbing.cols(); ++p)
         c.friction.pairs.push_back({static_cast<StencilKind>(state.rubbing(0, p)),
                                     {state.rubbing(1, p), state.rubbing(2, p)},
-                                    state.slipped.col(p)});
+                                    state.elastic_slip.col(p)});
     c.positions = std::move(state.positions);
     c.velocity = std::move(state.velocity);
     c.friction.reference = std::move(state.friction_reference);
@@ -73,8 +75,8 @@ std::optional<State> state_from(std::string_view bytes, const Json& manifest) {
     state.positions.resize(3, manifest.at("vertices").get<int>());
     state.velocity.resize(3, manifest.at("velocities").get<int>());
     state.friction_reference.resize(3, manifest.at("friction_references").get<int>());
-    state.slipped.resize(3, manifest.at("rubbing_pairs").get<int>());
-    state.rubbing.resize(3, state.slipped.cols());
+    state.elastic_slip.resize(3, manifest.at("rubbing_pairs").get<int>());
+    state.rubbing.resize(3, state.elastic_slip.cols());
     bool complete = true;
     state.for_each([&](auto& array) {
         const std::size_t size = static_cast<std::size_t>(array.size()) * sizeof(*array.data());
@@ -89,14 +91,13 @@ std::optional<State> state_from(std::string_view bytes, const Json& manifest) {
 
 Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& hash) {
     const Checkpoint& c = saved.checkpoint;
-    return {{"format", 1},
+    return {{"format", format},
             {"state", state},
             {"fnv1a64", hash},
             {"vertices", c.positions.cols()},
             {"velocities", c.velocity.cols()},
             {"friction_references", c.friction.reference.cols()},
             {"rubbing_pairs", c.friction.pairs.size()},
-            {"knows_rubbing_pairs", c.friction.knows_pairs},
             {"level", c.level},
             {"step", c.step},
             {"settle_step", c.settle_step},
@@ -128,7 +129,6 @@ SavedCheckpoint from_manifest(const Json& json) {
     json.at("log_bytes").get_to(saved.log_bytes);
     json.at("index_bytes").get_to(saved.index_bytes);
     c.report = report_from_json(json.at("report"));
-    json.at("knows_rubbing_pairs").get_to(c.friction.knows_pairs);
     return saved;
 }
 
@@ -146,10 +146,12 @@ std::optional<SavedCheckpoint> CheckpointFolder::load() {
     const std::filesystem::path manifest = folder_ / "manifest.json";
     if (!std::filesystem::exists(manifest))
         return std::nullopt;
-    const InputError damaged(manifest.string(), "the checkpoint is damaged",
-                             "begin again with --overwrite instead of --resume");
+    const std::string way_out = "begin again with --overwrite instead of --resume";
+    const InputError damaged(manifest.string(), "the checkpoint is damaged", way_out);
     try {
         const Json json = Json::parse(read_bytes(manifest));
+        if (json.at("format") != format)
+            throw InputError(manifest.string(), "the checkpoint is of another version of plisse", way_out);
         SavedCheckpoint saved = from_manifest(json);
         const int state = json.at("state").get<int>();
         const std::string bytes = read_bytes(folder_ / state_file_name(state));
