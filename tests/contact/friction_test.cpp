@@ -250,5 +250,61 @@ TEST(Friction, GoesOnWhereAContactSlidesToOtherPrimitives) {
     EXPECT_EQ(force_with_memory(StencilKind::edge_edge, of_face, of_point, -u), known);
 }
 
+/// A point slides over the valley between two slopes, near the bottom on one and then the other: the slope that it is
+/// far from begins to count, and the edge is counted off, without a jump of the force.
+TEST(Friction, ChangesContinuouslyWhereFacesBeginToCount) {
+    Scene scene;
+    scene.append_sheet(
+        2, [](double u, double v) { return Vec3(2 * u - 1, 0.3 * std::abs(2 * u - 1), 2 * v - 1); }, true);
+    scene.append_sheet(1, [](double u, double v) { return Vec3(0.4 * u - 0.2, 0.05 + u + v, 0.3 + 0.2 * v); });
+    // A face that lies across, over the same point: what is counted off in the valley is no business of its.
+    scene.append_sheet(
+        1, [](double u, double v) { return Vec3(2 * u - 1, 0.13 + 0.01 * u, 2 * v - 1); }, true);
+    Positions rest = scene.x;
+    for (int v = 0; v < rest.cols(); ++v)
+        if (scene.part[static_cast<std::size_t>(v)] != 1)
+            rest(1, v) -= 5 + scene.part[static_cast<std::size_t>(v)];
+    const CollisionMesh mesh = scene.mesh(rest);
+    ContactOptions options;
+    options.distance = 0.1;
+    options.stiffness = 1e4;
+    Contact contact(mesh, options);
+    int point = -1;
+    for (int v = 0; v < scene.x.cols() && point < 0; ++v)
+        if (scene.part[static_cast<std::size_t>(v)] == 1)
+            point = v;
+    const double e = 1e-3;
+    std::vector<double> coefficients(9, 0.3);
+    bool counted_off = false, none_counted_off = false;
+    Positions last;
+    constexpr int count = 400;
+    double largest = 0, largest_change = 0;
+    for (int i = 0; i <= count; ++i) {
+        Positions x = scene.x;
+        x.col(point).x() = 0.08 * (2.0 * i / count - 1);
+        const auto& pairs = contact.active_pairs(x);
+        std::vector<ActivePair> of_point;
+        for (const ActivePair& pair : pairs)
+            if (pair.kind == StencilKind::point_triangle && pair.primitives[0] == point)
+                of_point.push_back(pair);
+        const bool now =
+            std::any_of(of_point.begin(), of_point.end(), [](const auto& p) { return p.parameters.scale < 0; });
+        (now ? counted_off : none_counted_off) = true;
+        Friction friction(mesh, {e, coefficients});
+        Positions reference = x;
+        reference.col(point) -= Vec3(0, 0, 5 * e);
+        friction.begin({reference, {}});
+        friction.lag(of_point, x);
+        const Positions force = force_of(friction, x);
+        if (i > 0)
+            largest_change = std::max(largest_change, (force - last).norm());
+        largest = std::max(largest, force.norm());
+        last = force;
+    }
+    EXPECT_TRUE(counted_off);
+    EXPECT_TRUE(none_counted_off);
+    EXPECT_LT(largest_change, 0.05 * largest);
+}
+
 } // namespace
 } // namespace plisse

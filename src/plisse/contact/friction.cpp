@@ -30,19 +30,57 @@ bool of_one_point(const ActivePair& a, const ActivePair& b) {
     return a.kind == StencilKind::point_triangle && b.kind == a.kind && a.primitives[0] == b.primitives[0];
 }
 
-/// How hard pairs press, N. What is counted off at a point is shared out over its other pairs, so that a vertex in the
-/// fold of two faces rubs with the force that it presses with.
+/// Whether the place that one pair of a point is counted off for belongs to the face of another one.
+bool lies_on_face_of(const ActivePair& counted_off, const ActivePair& other) {
+    for (std::size_t i = 1; i < 4; ++i)
+        if (counted_off.separation.weights[static_cast<int>(i)] != 0 &&
+            std::find(other.vertices.begin() + 1, other.vertices.end(), counted_off.vertices[i]) ==
+                other.vertices.end())
+            return false;
+    return true;
+}
+
+/// Takes what is counted off for the edge between two faces from these, in inverse proportion to how much harder each
+/// presses: where an edge and a face come to be one place, and both pairs end, nothing is left of either.
+void take_off(std::size_t counted_off, std::size_t begin, std::span<const ActivePair> active,
+              const std::vector<double>& at_first, std::span<double> forces) {
+    const double taken = -at_first[counted_off];
+    const auto share = [&](std::size_t p) {
+        const bool shares = at_first[p] > 0 && lies_on_face_of(active[counted_off], active[p]);
+        return shares ? 1 / (std::abs(at_first[p] - taken) + 1e-9 * taken) : 0;
+    };
+    double shares = 0;
+    for (std::size_t p = begin; p < begin + forces.size(); ++p)
+        shares += share(p);
+    if (shares == 0)
+        return;
+    forces[counted_off - begin] += taken;
+    for (std::size_t p = begin; p < begin + forces.size(); ++p)
+        forces[p - begin] -= taken * share(p) / shares;
+}
+
+/// How hard pairs press, N. What is counted off at a point is taken from its other pairs, so that a vertex in the fold
+/// of two faces rubs with the force that it presses with: from those at the same place, and where it is more than they
+/// have, from all in proportion.
 std::vector<double> normal_forces(std::span<const ActivePair> active, const Positions& x) {
-    std::vector<double> forces;
+    std::vector<double> at_first;
     for (const ActivePair& pair : active)
-        forces.push_back(pair_normal_force(pair.parameters, pair.separation, gather(x, pair.vertices)));
+        at_first.push_back(pair_normal_force(pair.parameters, pair.separation, gather(x, pair.vertices)));
+    std::vector<double> forces = at_first;
     for (std::size_t begin = 0, end = 0; begin < active.size(); begin = end) {
-        double pressing = 0, counted_off = 0;
-        for (end = begin; end == begin || (end < active.size() && of_one_point(active[begin], active[end])); ++end)
-            (forces[end] > 0 ? pressing : counted_off) += forces[end];
-        const double left = pressing > 0 ? std::max(0.0, 1 + counted_off / pressing) : 0;
+        end = begin + 1;
+        while (end < active.size() && of_one_point(active[begin], active[end]))
+            ++end;
+        const auto of_point = std::span(forces).subspan(begin, end - begin);
         for (std::size_t p = begin; p < end; ++p)
-            forces[p] = left * std::max(0.0, forces[p]);
+            if (at_first[p] < 0)
+                take_off(p, begin, active, at_first, of_point);
+        double pressing = 0, lacking = 0;
+        for (const double force : of_point)
+            (force > 0 ? pressing : lacking) += force;
+        const double left = pressing > 0 ? std::max(0.0, 1 + lacking / pressing) : 0;
+        for (double& force : of_point)
+            force = left * std::max(0.0, force);
     }
     return forces;
 }
