@@ -43,7 +43,7 @@ constexpr BenchScene scenes[] = {
      {0.0025, 3, 400}},
     {"twist",
      R"({
-  // A cloth whose ends turn against each other.
+  // A cloth whose ends turn against each other, with the friction of cotton.
   "plisse": 1,
   "name": "twist",
   "bodies": [{"name": "cloth", "mesh": {"generate": "sheet", "size": [1, 1], "seed": 1},
@@ -55,7 +55,7 @@ constexpr BenchScene scenes[] = {
     {"name": "right", "body": "cloth", "select": {"box": [[0.499, -1, -1], [0.501, 1, 1]]},
      "motion": [{"t": 0}, {"t": 2, "rotate_deg": [-144, 0, 0]}]}],
   "gravity": [0, 0, 0],
-  "contact": {"distance": 1e-3},
+  "contact": {"distance": 1e-3, "friction": 0.3},
   "hierarchy": {"bending_on": "level"},
   "solve": {"time_step": 0.05, "duration": 2}
 })",
