@@ -43,7 +43,7 @@ constexpr BenchScene scenes[] = {
      {0.0025, 3, 400}},
     {"twist",
      R"({
-  // A cloth whose ends turn against each other, with the friction of cotton.
+  // A cloth whose ends turn against each other, and which rubs on itself.
   "plisse": 1,
   "name": "twist",
   "bodies": [{"name": "cloth", "mesh": {"generate": "sheet", "size": [1, 1], "seed": 1},

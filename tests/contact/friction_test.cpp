@@ -48,6 +48,12 @@ struct Rub {
     std::unique_ptr<Contact> contact;
 };
 
+Positions force_of(const Friction& friction, const Positions& x) {
+    Positions gradient = Positions::Zero(3, x.cols());
+    friction.add_gradient(x, gradient);
+    return gradient;
+}
+
 double total_normal_force(Rub& rub) {
     double sum = 0;
     for (const ActivePair& pair : rub.contact->active_pairs(rub.scene.x))
@@ -119,11 +125,7 @@ TEST(Friction, OpposesTheSlipWithItsLimitBeyondIt) {
 TEST(Friction, MixesForcesByTheirShares) {
     Rub rub;
     const Positions reference = rub.scene.x, lower = rub.shifted(Vec3(0, -1e-3, 0)), at = rub.shifted(Vec3(1e-4, 0, 0));
-    const auto gradient = [&](const Friction& friction) {
-        Positions sum = Positions::Zero(3, at.cols());
-        friction.add_gradient(at, sum);
-        return sum;
-    };
+    const auto gradient = [&](const Friction& friction) { return force_of(friction, at); };
     const auto lagged_at = [&](const Positions& x) {
         Friction friction = rub.friction(0.5);
         friction.begin({reference, {}});
@@ -160,27 +162,16 @@ TEST(Friction, RemembersWhereContactsStickOverSteps) {
     friction.remember(pairs, rub.scene.x);
     // A slip of five times e to a new place with the same contacts: what is beyond e is given up, the force stays.
     const Vec3 motion = 5 * slip * Vec3(0, 0, 1);
-    const auto force_at = [&](const Friction& f, const Positions& x) {
-        Positions gradient = Positions::Zero(3, x.cols());
-        f.add_gradient(x, gradient);
-        return gradient;
-    };
-    const Positions before = force_at(friction, rub.shifted(motion));
+    const Positions before = force_of(friction, rub.shifted(motion));
     friction.remember(pairs, rub.shifted(motion));
     Friction next = rub.friction(0.3);
     next.begin(friction.memory());
     next.lag(pairs, rub.shifted(motion));
-    const Positions after = force_at(next, rub.shifted(motion));
+    const Positions after = force_of(next, rub.shifted(motion));
     EXPECT_LT((after - before).norm(), 1e-3 * before.norm()); // normal forces are of one shape of the surfaces
     // Back by half of e: a contact that had kept its first reference would still pull with all its force.
-    const Positions back = force_at(next, rub.shifted(motion - 0.5 * slip * Vec3(0, 0, 1)));
+    const Positions back = force_of(next, rub.shifted(motion - 0.5 * slip * Vec3(0, 0, 1)));
     EXPECT_NEAR(back.norm() / after.norm(), 0.75, 0.02); // f1(e/2)
-}
-
-Positions force_of(const Friction& friction, const Positions& x) {
-    Positions gradient = Positions::Zero(3, x.cols());
-    friction.add_gradient(x, gradient);
-    return gradient;
 }
 
 TEST(Friction, ForgetsTheWayOnWhichContactsHaveCome) {

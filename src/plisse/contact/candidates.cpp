@@ -113,13 +113,7 @@ double Candidates::find_along(const Positions& x, const Positions& d, double mos
 }
 
 std::array<int, 4> Candidates::vertices(StencilKind kind, int i) const {
-    const auto [first, second] = primitives(kind, i);
-    if (kind == StencilKind::point_triangle) {
-        const Face& face = mesh_.faces[static_cast<std::size_t>(second)];
-        return {first, face[0], face[1], face[2]};
-    }
-    const Edge &a = mesh_.edges[static_cast<std::size_t>(first)], &b = mesh_.edges[static_cast<std::size_t>(second)];
-    return {a[0], a[1], b[0], b[1]};
+    return mesh_.stencil_vertices(kind, primitives(kind, i));
 }
 
 void Candidates::set_regions(const Positions& x, const Positions* d, double share) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include <plisse/base/types.h>
+#include <plisse/geometry/ccd.h>
 #include <plisse/mesh/connectivity.h>
 
 namespace plisse {
@@ -24,6 +26,17 @@ struct CollisionMesh {
     bool has_corner(int face, int vertex) const {
         const auto& [a, b, c] = faces[static_cast<std::size_t>(face)];
         return a == vertex || b == vertex || c == vertex;
+    }
+
+    /// Vertices of a vertex and a face, or of two edges, in the order of a stencil.
+    std::array<int, 4> stencil_vertices(StencilKind kind, const std::array<int, 2>& primitives) const {
+        const auto first = static_cast<std::size_t>(primitives[0]), second = static_cast<std::size_t>(primitives[1]);
+        if (kind == StencilKind::point_triangle) {
+            const auto& [a, b, c] = faces[second];
+            return {primitives[0], a, b, c};
+        }
+        const Edge &a = edges[first], &b = edges[second];
+        return {a[0], a[1], b[0], b[1]};
     }
 
     CollisionMesh() = default;

@@ -132,19 +132,9 @@ void Friction::begin(FrictionMemory memory) {
     memory_ = std::move(memory);
     pairs_at_.clear();
     for (int p = 0; p < static_cast<int>(memory_.pairs.size()); ++p)
-        for (const int vertex : vertices(memory_.pairs[at(p)]))
+        for (const int vertex : mesh_.stencil_vertices(memory_.pairs[at(p)].kind, memory_.pairs[at(p)].primitives))
             pairs_at_.emplace_back(vertex, p);
     std::sort(pairs_at_.begin(), pairs_at_.end());
-}
-
-std::array<int, 4> Friction::vertices(const RubbingPair& pair) const {
-    const auto [first, second] = pair.primitives;
-    if (pair.kind == StencilKind::point_triangle) {
-        const auto& [a, b, c] = mesh_.faces[at(second)];
-        return {first, a, b, c};
-    }
-    const Edge &a = mesh_.edges[at(first)], &b = mesh_.edges[at(second)];
-    return {a[0], a[1], b[0], b[1]};
 }
 
 Vec3 Friction::elastic_slip(const ActivePair& pair) const {
@@ -160,7 +150,8 @@ Vec3 Friction::elastic_slip(const ActivePair& pair) const {
         for (auto entry = std::lower_bound(pairs_at_.begin(), pairs_at_.end(), first);
              entry != pairs_at_.end() && entry->first == pair.vertices[i]; ++entry) {
             const RubbingPair& neighbour = memory_.pairs[at(entry->second)];
-            const SharedPlace place = shared_place(pair, neighbour.kind, vertices(neighbour));
+            const SharedPlace place =
+                shared_place(pair, neighbour.kind, mesh_.stencil_vertices(neighbour.kind, neighbour.primitives));
             if (place.share > largest) {
                 largest = place.share;
                 result = place.sign * neighbour.elastic_slip;

@@ -78,7 +78,6 @@ private:
     double coefficient(const ActivePair& pair) const;
     bool rubs(const ActivePair& pair) const;
     Contact contact(const ActivePair& pair) const;
-    std::array<int, 4> vertices(const RubbingPair& pair) const;
     Vec3 elastic_slip(const ActivePair& pair) const;
     Vec3 sliding(const Contact& contact, const Positions& x) const;
 
