@@ -152,15 +152,35 @@ TEST(CheckpointFolder, SurvivesAKillAtAnyMomentOfTheNextSave) {
     expect_same(CheckpointFolder(folder.path()).load()->checkpoint, sample_checkpoint(2));
 }
 
+std::string message_of_loading(const TemporaryFolder& folder) {
+    try {
+        CheckpointFolder(folder.path()).load();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "it was loaded";
+}
+
 TEST(CheckpointFolder, SaysWhenTheStateIsDamaged) {
     const TemporaryFolder folder;
     CheckpointFolder(folder.path()).save({sample_checkpoint(1), 1, 2});
     std::string state = read_text(folder.path() / "state-0.bin");
     state[100] = static_cast<char>(state[100] ^ 1);
     write_text(folder.path() / "state-0.bin", state);
-    EXPECT_THROW(CheckpointFolder(folder.path()).load(), InputError);
-    write_text(folder.path() / "manifest.json", "{\"format\": 1}");
-    EXPECT_THROW(CheckpointFolder(folder.path()).load(), InputError);
+    EXPECT_EQ(message_of_loading(folder), (folder.path() / "manifest.json").string() +
+                                              ": the checkpoint is damaged; "
+                                              "begin again with --overwrite instead of --resume");
+}
+
+TEST(CheckpointFolder, TellsAnotherVersionFromDamage) {
+    const TemporaryFolder folder;
+    CheckpointFolder(folder.path()).save({sample_checkpoint(1), 1, 2});
+    Json manifest = Json::parse(read_text(folder.path() / "manifest.json"));
+    manifest["format"] = manifest["format"].get<int>() - 1;
+    write_text(folder.path() / "manifest.json", manifest.dump());
+    EXPECT_EQ(message_of_loading(folder), (folder.path() / "manifest.json").string() +
+                                              ": the checkpoint is of another version of plisse; "
+                                              "begin again with --overwrite instead of --resume");
 }
 
 class RunFolderTest : public testing::Test {
