@@ -33,7 +33,7 @@ NewtonSystem assembled_system(const Fixture& fixture, const ElementEnergy& energ
     system.set_prescribed_step(VecX::Zero(fixture.x.size()));
     assembly.place_in(system);
     system.begin({});
-    assembly.add_hessian(fixture.x, system);
+    assembly.add_hessian(fixture.x, system, true);
     return system;
 }
 

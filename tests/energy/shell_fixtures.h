@@ -148,7 +148,7 @@ inline VecX total_gradient(const ElementEnergy& energy, const VecX& x) {
 
 inline Eigen::MatrixXd total_hessian(const ElementEnergy& energy, const VecX& x, bool project) {
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(x.size(), x.size());
-    std::array<double, 144> buffer;
+    std::array<double, 9 * ElementEnergy::most_vertices * ElementEnergy::most_vertices> buffer;
     for (int e = 0; e < energy.element_count(); ++e) {
         energy.hessian(e, as_positions(x), project, buffer.data());
         const auto v = energy.vertices(e);

@@ -140,7 +140,6 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
         with(R"(, "hierarchy": {"source": "loop"})"),
         with(R"(, "solve": {"method": "rmtr"})"),
         with(R"(, "obstacles": [{"mesh": "b.obj", "motion": {"frames": "f/*.obj", "dt": 0.04}}])"),
-        with("", R"(, "material": {"bending": "koiter"})"),
         with("", R"(, "material": "denim-stable")"),
         with("", R"(, "material": "denim-table")"),
         with("", R"(, "pressure": {"gas": 100})"),

@@ -64,10 +64,8 @@ void ElementAssembly::add_hessian(const Positions& x, NewtonSystem& system, bool
         energy_.hessian(element, x, project, local.data());
         const std::span<const int> vertices = energy_.vertices(element);
         const int* numbers = block_numbers_.data() + block_starts_[static_cast<std::size_t>(element)];
-        if (vertices.size() == 3)
-            system.add(vertices, numbers, Eigen::Map<const Eigen::Matrix<double, 9, 9>>(local.data()));
-        else
-            system.add(vertices, numbers, Eigen::Map<const Eigen::Matrix<double, 12, 12>>(local.data()));
+        const auto unknowns = static_cast<Eigen::Index>(3 * vertices.size());
+        system.add(vertices, numbers, Eigen::Map<const Eigen::MatrixXd>(local.data(), unknowns, unknowns));
     });
 }
 

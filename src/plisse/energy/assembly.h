@@ -8,25 +8,38 @@
 
 namespace plisse {
 
+/// An energy of all positions of a mesh with its derivatives.
+class AssembledEnergy {
+public:
+    virtual ~AssembledEnergy() = default;
+
+    /// J; +infinity where any element is degenerate.
+    virtual double value(const Positions& x) const = 0;
+    /// Adds dW/dx, N; 3 x vertex_count.
+    virtual void add_gradient(const Positions& x, Positions& gradient) const = 0;
+    /// Finds where the Hessian's blocks go in the system, which was made with pairs().
+    virtual void place_in(const NewtonSystem& system) = 0;
+    /// Adds the Hessian, N/m, or, when `project` is set, a positive semi-definite stand-in for it, to the system of
+    /// place_in.
+    virtual void add_hessian(const Positions& x, NewtonSystem& system, bool project) const = 0;
+    /// Pairs of vertices that the Hessian couples, lower first, ascending.
+    virtual std::vector<Edge> pairs() const = 0;
+};
+
 /// Sums an ElementEnergy and its derivatives over its elements, in parallel, with the same bits for any number of
 /// threads: elements are grouped and the groups coloured once, so that those of one colour share no vertex, and colours
 /// are added in turn.
-class ElementAssembly {
+class ElementAssembly : public AssembledEnergy {
 public:
     /// Refers to the energy, which must outlive it; its elements and their vertices must not change.
     ElementAssembly(const ElementEnergy& energy, int vertex_count);
 
-    /// J; +infinity where any element is degenerate.
-    double value(const Positions& x) const;
-    /// Adds dW/dx, N; 3 x vertex_count.
-    void add_gradient(const Positions& x, Positions& gradient) const;
-    /// Finds where the elements' blocks go in the system, which was made with pairs().
-    void place_in(const NewtonSystem& system);
-    /// Adds the Hessian, N/m, each element's projected when `project` is set, to the system of place_in.
-    void add_hessian(const Positions& x, NewtonSystem& system, bool project = true) const;
-
-    /// Pairs of vertices that share an element, lower first, ascending.
-    std::vector<Edge> pairs() const;
+    double value(const Positions& x) const override;
+    void add_gradient(const Positions& x, Positions& gradient) const override;
+    void place_in(const NewtonSystem& system) override;
+    /// Each element's is projected when `project` is set.
+    void add_hessian(const Positions& x, NewtonSystem& system, bool project) const override;
+    std::vector<Edge> pairs() const override;
 
 private:
     template <typename Body>

@@ -6,11 +6,11 @@
 
 namespace plisse {
 
-/// An energy that is a sum over elements of three or four vertices each. Implementations hold structure-of-arrays data
+/// An energy that is a sum over elements of three to six vertices each. Implementations hold structure-of-arrays data
 /// and no state between calls; assembly over elements is written once, in assembly.h.
 class ElementEnergy {
 public:
-    static constexpr int most_vertices = 4;
+    static constexpr int most_vertices = 6;
     virtual ~ElementEnergy() = default;
 
     virtual int element_count() const = 0;

@@ -11,6 +11,11 @@
 
 namespace plisse {
 
+enum class BendingModel {
+    hinge, ///< HingeEnergy: the papers'
+    koiter ///< KoiterBending: converges to plate and shell theory
+};
+
 /// An isotropic shell material.
 struct Material {
     double density = 472.6;       ///< kg/m^3 of solid, > 0
@@ -20,6 +25,7 @@ struct Material {
     double bending_scale = 1;     ///< c of DESIGN.md section 4, >= 0
     /// Largest principal stretch, > 1; empty: none.
     std::optional<double> strain_limit = std::nullopt;
+    BendingModel bending = BendingModel::hinge;
 };
 
 /// Half-open range of vertices or faces of the model's mesh.

@@ -25,20 +25,49 @@ std::unique_ptr<MembraneEnergy> make_membrane(const Model& model, const Position
     return std::make_unique<MembraneEnergy>(rest, faces, std::move(materials));
 }
 
-std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& rest, const std::vector<Face>& faces,
-                                         const std::vector<int>& face_body) {
-    const Connectivity connectivity(static_cast<int>(rest.cols()), faces);
-    Hinges hinges = interior_hinges(connectivity, faces);
+/// The faces of bodies whose bending is of one model, and the body of each.
+struct BentFaces {
+    std::vector<Face> faces;
+    std::vector<int> body;
+};
+
+BentFaces faces_bent_by(BendingModel bending, const Model& model, const std::vector<Face>& faces,
+                        const std::vector<int>& face_body) {
+    BentFaces bent;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        if (model.bodies[at(face_body[f])].material.bending == bending) {
+            bent.faces.push_back(faces[f]);
+            bent.body.push_back(face_body[f]);
+        }
+    return bent;
+}
+
+double scaled_rigidity(const Material& material) {
+    return material.bending_scale *
+           bending_rigidity(material.youngs_modulus, material.poisson_ratio, material.thickness);
+}
+
+std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& rest, const BentFaces& bent) {
+    const Connectivity connectivity(static_cast<int>(rest.cols()), bent.faces);
+    Hinges hinges = interior_hinges(connectivity, bent.faces);
     HingeMaterials materials;
     for (const auto& sides : hinges.faces) {
-        const Body& body = model.bodies[at(face_body[at(sides[0])])];
-        const Material& material = body.material;
-        materials.scaled_rigidity.push_back(material.bending_scale * bending_rigidity(material.youngs_modulus,
-                                                                                      material.poisson_ratio,
-                                                                                      material.thickness));
+        const Body& body = model.bodies[at(bent.body[at(sides[0])])];
+        materials.scaled_rigidity.push_back(scaled_rigidity(body.material));
         materials.flat.push_back(body.flat_rest_angles);
     }
     return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials, HingeHessian::projected);
+}
+
+std::unique_ptr<KoiterBending> make_koiter(const Model& model, const Positions& rest, const BentFaces& bent) {
+    KoiterMaterials materials;
+    for (int b : bent.body) {
+        const Body& body = model.bodies[at(b)];
+        materials.scaled_rigidity.push_back(scaled_rigidity(body.material));
+        materials.poisson_ratio.push_back(body.material.poisson_ratio);
+        materials.flat.push_back(body.flat_rest_angles);
+    }
+    return std::make_unique<KoiterBending>(rest, bent.faces, materials);
 }
 
 } // namespace
@@ -48,8 +77,12 @@ ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const st
     : model_(model), vertex_count_(static_cast<int>(rest.cols())) {
     if (parts.membrane)
         add_term(make_membrane(model, rest, faces, face_body));
-    if (parts.bending)
-        add_term(make_hinges(model, rest, faces, face_body));
+    if (parts.bending) {
+        if (const BentFaces bent = faces_bent_by(BendingModel::hinge, model, faces, face_body); !bent.faces.empty())
+            add_term(make_hinges(model, rest, bent));
+        if (const BentFaces bent = faces_bent_by(BendingModel::koiter, model, faces, face_body); !bent.faces.empty())
+            elastic_.push_back({nullptr, make_koiter(model, rest, bent)});
+    }
     if (!parts.pressure)
         return;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -83,13 +116,13 @@ void ShellEnergies::set_time(double t) {
 double ShellEnergies::elastic_value(const Positions& y) const {
     double sum = 0;
     for (const Term& term : elastic_)
-        sum += term.assembly->value(y);
+        sum += term.sum->value(y);
     return sum;
 }
 
 void ShellEnergies::add_elastic_gradient(const Positions& y, Positions& gradient) const {
     for (const Term& term : elastic_)
-        term.assembly->add_gradient(y, gradient);
+        term.sum->add_gradient(y, gradient);
 }
 
 double ShellEnergies::pressure_value(const Positions& y) const {
@@ -106,18 +139,18 @@ void ShellEnergies::add_pressure_gradient(const Positions& y, Positions& gradien
 
 void ShellEnergies::place_in(const NewtonSystem& system) {
     for (Term& term : elastic_)
-        term.assembly->place_in(system);
+        term.sum->place_in(system);
 }
 
 void ShellEnergies::add_hessian(const Positions& y, NewtonSystem& system, bool project) const {
     for (const Term& term : elastic_)
-        term.assembly->add_hessian(y, system, project);
+        term.sum->add_hessian(y, system, project);
 }
 
 std::vector<Edge> ShellEnergies::pairs() const {
     std::vector<Edge> all;
     for (const Term& term : elastic_) {
-        const std::vector<Edge> pairs = term.assembly->pairs();
+        const std::vector<Edge> pairs = term.sum->pairs();
         all.insert(all.end(), pairs.begin(), pairs.end());
     }
     return all;

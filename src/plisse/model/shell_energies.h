@@ -5,6 +5,7 @@
 
 #include <plisse/energy/assembly.h>
 #include <plisse/energy/hinge.h>
+#include <plisse/energy/koiter.h>
 #include <plisse/energy/membrane.h>
 #include <plisse/energy/pressure.h>
 #include <plisse/model/model.h>
@@ -43,8 +44,8 @@ public:
 
 private:
     struct Term {
-        std::unique_ptr<ElementEnergy> energy;
-        std::unique_ptr<ElementAssembly> assembly;
+        std::unique_ptr<ElementEnergy> energy; ///< what the sum refers to, if anything
+        std::unique_ptr<AssembledEnergy> sum;
     };
     struct ClosedBody {
         int body;

@@ -22,7 +22,7 @@ public:
     void add_gradient(const Positions& x, Positions& gradient) const { assembly_.add_gradient(x, gradient); }
     /// The blocks of the faces' edges must be in the system.
     void place_in(const NewtonSystem& system) { assembly_.place_in(system); }
-    void add_hessian(const Positions& x, NewtonSystem& system) const { assembly_.add_hessian(x, system); }
+    void add_hessian(const Positions& x, NewtonSystem& system) const { assembly_.add_hessian(x, system, true); }
     double max_step(const Positions& x, const Positions& d) const { return energy_.max_step(x, d); }
 
     /// The faces that are stretched too far, and the worst of them.

@@ -53,9 +53,8 @@ inline const Choices<Diagonals>& choices_of(Diagonals) {
     static const Choices<Diagonals> all{{{"alternating", Diagonals::alternating}, {"one", Diagonals::one}}, {}};
     return all;
 }
-enum class BendingModel { hinge };
 inline const Choices<BendingModel>& choices_of(BendingModel) {
-    static const Choices<BendingModel> all{{{"hinge", BendingModel::hinge}}, {"koiter"}};
+    static const Choices<BendingModel> all{{{"hinge", BendingModel::hinge}, {"koiter", BendingModel::koiter}}, {}};
     return all;
 }
 inline const Choices<ProlongationOperator>& choices_of(ProlongationOperator) {
@@ -159,8 +158,8 @@ void describe(Visitor& v, Material& m) {
     v.field("youngs_modulus", m.youngs_modulus, positive, "Pa");
     v.field("poisson_ratio", m.poisson_ratio, Limits{-0.95, 0.499}, "Poisson's ratio");
     v.field("thickness", m.thickness, positive, "m");
-    BendingModel bending = BendingModel::hinge;
-    v.field("bending", bending, "the bending energy");
+    v.field("bending", m.bending,
+            "the bending energy: hinge is the papers', koiter converges to plate and shell theory on any mesh");
     v.field(
         "bending_scale", m.bending_scale, not_negative,
         "factor of the bending energy: 1 is exact for a sheet rolled along mesh lines, 3 compares with public codes");
