@@ -1,75 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include <plisse/drive/run.h>
 #include <plisse/energy/hinge.h>
 
-#include "small_models.h"
+#include "plate_models.h"
 
 using namespace plisse;
 
 namespace {
-
-/// A flat strip or plate in the xz-plane, free of gravity, to be solved directly.
-Model flat_model(const GeneratorOptions& sheet, const Material& material) {
-    Model model = empty_model("plate");
-    add_body(model, "plate", material, generate_mesh(sheet));
-    model.gravity = Track<Vec3>(Vec3::Zero());
-    model.contact.distance = 1e-3 * material.thickness;
-    model.contact.self = false;
-    model.hierarchy.levels = 1;
-    model.solve.method = Method::direct;
-    model.solve.time_step = 0.1;
-    model.solve.duration = 1;
-    return model;
-}
-
-Model strip_model(double length, double width, std::array<int, 2> cells, const Material& material) {
-    GeneratorOptions sheet;
-    sheet.shape = GeneratorShape::sheet;
-    sheet.pattern = Pattern::regular;
-    sheet.size = Vec3(length, width, 0);
-    sheet.cells = cells;
-    return flat_model(sheet, material);
-}
-
-std::vector<int> vertices_where(const Model& model, const std::function<bool(const Vec3&)>& chosen) {
-    std::vector<int> vertices;
-    for (int v = 0; v < model.mesh.vertex_count(); ++v)
-        if (chosen(model.mesh.positions.col(v)))
-            vertices.push_back(v);
-    return vertices;
-}
-
-Handle& add_handle(Model& model, const std::string& name, std::array<bool, 3> axes, std::vector<int> vertices) {
-    Handle handle;
-    handle.name = name;
-    handle.axes = axes;
-    handle.vertices = std::move(vertices);
-    model.handles.push_back(handle);
-    return model.handles.back();
-}
-
-void add_load(Model& model, Load::Kind kind, std::vector<int> vertices, const Vec3& value) {
-    Load load;
-    load.kind = kind;
-    load.vertices = std::move(vertices);
-    load.value = Track<Vec3>(value);
-    model.loads.push_back(load);
-}
-
-RunResult solve(const Model& model) {
-    Recorder recorder;
-    Context context;
-    RunResult result = run(model, {}, recorder, context);
-    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
-    return result;
-}
-
-constexpr std::array<bool, 3> clamped{true, true, true}, only_y{false, true, false}, all_but_x{false, true, true};
 
 TEST(BeamsB2, CantileverOfRightTrianglesBendsAsMeasured) {
     constexpr double length = 10, width = 1, load = 1e-4;
@@ -83,7 +23,7 @@ TEST(BeamsB2, CantileverOfRightTrianglesBendsAsMeasured) {
         sheet.diagonals = Diagonals::one;
         sheet.size = Vec3(length + edge, width, 0);
         sheet.cells = {cells + 1, cells / 10};
-        Model model = flat_model(sheet, material);
+        Model model = shell_model(generate_mesh(sheet), material);
         const double half = 0.5 * (length + edge);
         add_handle(model, "clamp", clamped,
                    vertices_where(model, [&](const Vec3& p) { return p.x() < -half + 1.5 * edge; }));
@@ -109,7 +49,7 @@ TEST(BeamsB2, SimplySupportedPlateOfIrregularTriangles) {
     sheet.size = Vec3(1, 1, 0);
     sheet.edge_length = 1.0 / 32;
     const Material material{1000, 1e7, 0.3, 0.01, 1};
-    Model model = flat_model(sheet, material);
+    Model model = shell_model(generate_mesh(sheet), material);
     const auto on_edge = [](const Vec3& p) { return std::max(std::abs(p.x()), std::abs(p.z())) > 0.5 - 1e-9; };
     add_handle(model, "edge", only_y, vertices_where(model, on_edge));
     constexpr double pressure = 0.1;

@@ -101,6 +101,16 @@ TEST(Equilibria, ASheetHungByAnEdgeComesToTheSameRestByBothMethods) {
     EXPECT_LT(progressive.positions.row(1).minCoeff(), -0.25); // it does hang
 }
 
+TEST(Equilibria, ASheetBentByKoiterComesToTheSameRestByBothMethods) {
+    Model model = hung_sheet();
+    model.bodies[0].material.bending = BendingModel::koiter;
+    const RunResult direct = run_with(model, Method::direct);
+    for (BendingOn bending_on : {BendingOn::finest, BendingOn::level}) {
+        model.hierarchy.bending_on = bending_on;
+        expect_one_equilibrium(model, run_with(model, Method::progressive), direct);
+    }
+}
+
 TEST(Equilibria, AnInflatedSphereComesToTheSameRestByBothMethods) {
     const Model model = inflated_sphere(0.02).model;
     expect_one_equilibrium(model, run_with(model, Method::progressive), run_with(model, Method::direct));

@@ -12,9 +12,11 @@ using namespace plisse;
 namespace {
 
 /// A curved, pressurised, loaded body near a ball, so that every term of F_l acts.
-Model loaded_model(BendingOn bending_on, ProlongationOperator kind) {
+Model loaded_model(BendingOn bending_on, ProlongationOperator kind, BendingModel bending = BendingModel::hinge) {
     Model model = empty_model("loaded");
-    add_body(model, "body", {1000, 1e6, 0.3, 2e-3, 1}, sphere_mesh(0.1, 0.03)).pressure = Track<double>(200);
+    Body& body = add_body(model, "body", {1000, 1e6, 0.3, 2e-3, 1}, sphere_mesh(0.1, 0.03));
+    body.pressure = Track<double>(200);
+    body.material.bending = bending;
     Obstacle ball;
     ball.name = "ball";
     append_part(model, sphere_mesh(0.1, 0.04), Vec3(0, -0.205, 0), ball.vertices, ball.faces);
@@ -25,12 +27,13 @@ Model loaded_model(BendingOn bending_on, ProlongationOperator kind) {
     return model;
 }
 
-class ProxyDerivatives : public testing::TestWithParam<std::tuple<int, BendingOn, ProlongationOperator>> {};
+class ProxyDerivatives : public testing::TestWithParam<std::tuple<int, BendingOn, ProlongationOperator, BendingModel>> {
+};
 
 TEST_P(ProxyDerivatives, GradientMatchesCentralDifferences) {
-    const auto [level, bending_on, kind] = GetParam();
+    const auto [level, bending_on, kind, bending] = GetParam();
     Context context;
-    const Model model = loaded_model(bending_on, kind);
+    const Model model = loaded_model(bending_on, kind, bending);
     const Discretization discretization(model, 3, context);
     ShellProblem problem(discretization, level, EnergiesOf::finest, context);
     Random random(3);
@@ -57,10 +60,11 @@ TEST_P(ProxyDerivatives, GradientMatchesCentralDifferences) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Levels, ProxyDerivatives,
-    testing::Combine(testing::Values(0, 1, 2), testing::Values(BendingOn::finest, BendingOn::level),
-                     testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic)));
+INSTANTIATE_TEST_SUITE_P(Levels, ProxyDerivatives,
+                         testing::Combine(testing::Values(0, 1, 2),
+                                          testing::Values(BendingOn::finest, BendingOn::level),
+                                          testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic),
+                                          testing::Values(BendingModel::hinge, BendingModel::koiter)));
 
 /// The limit acts on the level's own faces, whatever carries the elasticity.
 TEST(ShellProblem, FeelsStrainLimitsOnEveryLevel) {

@@ -19,10 +19,3 @@ int thread_count() {
 }
 
 } // namespace plisse
-
-#ifdef __SANITIZE_THREAD__
-/// TBB's own hand-over between its inlined and its library half.
-extern "C" const char* __tsan_default_suppressions() {
-    return "race_top:tbb::detail\nrace_top:std::__atomic_base\n";
-}
-#endif

@@ -3,14 +3,12 @@
 #include <cstddef>
 #include <vector>
 
+#ifdef __SANITIZE_THREAD__
+#include <atomic>
+#include <thread>
+#else
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-
-#ifdef __SANITIZE_THREAD__
-extern "C" {
-void __tsan_acquire(void* address);
-void __tsan_release(void* address);
-}
 #endif
 
 namespace plisse {
@@ -33,32 +31,6 @@ private:
 /// How many threads parallel loops use now.
 int thread_count();
 
-/// Tells a thread sanitizer what TBB's library, which it cannot see into, orders: whatever came before a loop before
-/// the loop's pieces, and these before whatever follows it. Nothing orders the pieces among each other.
-class LoopOrder {
-public:
-#ifdef __SANITIZE_THREAD__
-    LoopOrder() {
-        __tsan_release(&begun_);
-    }
-    ~LoopOrder() {
-        __tsan_acquire(&ended_);
-    }
-    void begin_piece() {
-        __tsan_acquire(&begun_);
-    }
-    void end_piece() {
-        __tsan_release(&ended_);
-    }
-
-private:
-    char begun_ = 0, ended_ = 0;
-#else
-    void begin_piece() {}
-    void end_piece() {}
-#endif
-};
-
 /// Runs body(i) for i in [0, count). The calls must not write to the same place: nothing orders them.
 template <typename Body>
 void parallel_for(int count, int grain, const Body& body) {
@@ -67,14 +39,27 @@ void parallel_for(int count, int grain, const Body& body) {
             body(i);
         return;
     }
-    LoopOrder order;
+#ifdef __SANITIZE_THREAD__
+    // The sanitizer cannot see into TBB's library and would call its hand-overs races, so it is shown plain threads.
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int begin = 0; (begin = next.fetch_add(grain, std::memory_order_relaxed)) < count;)
+            for (int i = begin; i < begin + grain && i < count; ++i)
+                body(i);
+    };
+    std::vector<std::thread> others;
+    for (int k = 1; k < thread_count(); ++k)
+        others.emplace_back(work);
+    work();
+    for (std::thread& other : others)
+        other.join();
+#else
     tbb::parallel_for(tbb::blocked_range<int>(0, count, static_cast<std::size_t>(grain)),
                       [&](const tbb::blocked_range<int>& range) {
-                          order.begin_piece();
                           for (int i = range.begin(); i < range.end(); ++i)
                               body(i);
-                          order.end_piece();
                       });
+#endif
 }
 
 /// Number of fixed-size chunks a deterministic reduction over `count` items uses; independent of the thread count.

@@ -70,7 +70,7 @@ KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, con
 
     for (std::size_t f = 0; f < faces.size(); ++f) {
         ElementFace element{};
-        element.edges = {connectivity.face_edges()[f], Vec3::Ones(),
+        element.edges = {connectivity.face_edges()[f], Vec3::Ones(), Vec3::Zero(),
                          turn_stiffness(rest, faces[f], materials.scaled_rigidity[f], materials.poisson_ratio[f])};
         const auto number_of = [&](int vertex) {
             const auto end = element.vertices.begin() + element.vertex_count;
@@ -93,6 +93,18 @@ KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, con
         }
         faces_.push_back(element);
     }
+    share_angles(connectivity);
+}
+
+void KoiterFaces::share_angles(const Connectivity& connectivity) {
+    std::vector<double> of_edge(at(edge_count_), 0.0); // stiffness of both faces
+    for (const ElementFace& element : faces_)
+        for (int k = 0; k < 3; ++k)
+            of_edge[at(element.edges.edges[at(k)])] += element.edges.stiffness(k, k);
+    for (ElementFace& element : faces_)
+        for (int k = 0; k < 3; ++k)
+            if (const int edge = element.edges.edges[at(k)]; !connectivity.is_boundary_edge(edge))
+                element.edges.share[k] = 1 - element.edges.stiffness(k, k) / of_edge[at(edge)];
 }
 
 std::span<const int> KoiterFaces::vertices(int face) const {
@@ -105,19 +117,20 @@ Dihedral KoiterFaces::hinge_at(const Side& side, const Positions& x) const {
     return dihedral(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
 }
 
-Vec3 KoiterFaces::half_angles(int face, const Positions& x) const {
+Vec3 KoiterFaces::angles(int face, const Positions& x) const {
     Vec3 result = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
         if (const int h = faces_[at(face)].sides[at(k)].hinge; h >= 0) {
             const auto& v = hinges_[at(h)];
-            result[k] = (dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3])) - rest_angles_[at(h)]) / 2;
+            result[k] = edges_of(face).share[k] *
+                        (dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3])) - rest_angles_[at(h)]);
         }
     return result;
 }
 
 Vec3 KoiterFaces::turns(int face, const Positions& x) const {
     const FaceEdges& edges = edges_of(face);
-    Vec3 result = half_angles(face, x);
+    Vec3 result = angles(face, x);
     for (int k = 0; k < 3; ++k) {
         const int edge = edges.edges[at(k)];
         result[k] += edges.sign[k] * x(edge % 3, vertex_count_ + edge / 3);
@@ -141,8 +154,9 @@ void KoiterFaces::gradient(int face, const Positions& x, double* gradient) const
         if (side.hinge < 0)
             continue;
         const Vec12 slope = dihedral_gradient(hinge_at(side, x));
+        const double share = element.edges.share[k];
         for (int c = 0; c < 4; ++c)
-            result.segment<3>(3 * side.corners[at(c)]) += moments[k] / 2 * slope.segment<3>(3 * c);
+            result.segment<3>(3 * side.corners[at(c)]) += share * moments[k] * slope.segment<3>(3 * c);
     }
 }
 
@@ -160,10 +174,10 @@ void KoiterFaces::hessian(int face, const Positions& x, bool project, double* he
             continue;
         const Dihedral state = hinge_at(side, x);
         const Vec12 slope = dihedral_gradient(state);
-        const double moment = moments[k] / 2;
+        const double share = element.edges.share[k], moment = share * moments[k];
         const Mat12 curved = project ? positive_curvature(state, moment) : Mat12(moment * dihedral_hessian(state));
         for (int c = 0; c < 4; ++c) {
-            slopes.block<3, 1>(3 * side.corners[at(c)], k) += slope.segment<3>(3 * c) / 2;
+            slopes.block<3, 1>(3 * side.corners[at(c)], k) += share * slope.segment<3>(3 * c);
             for (int d = 0; d < 4; ++d)
                 result.block<3, 3>(3 * side.corners[at(c)], 3 * side.corners[at(d)]) +=
                     curved.block<3, 3>(3 * c, 3 * d);
@@ -207,7 +221,7 @@ const Positions& KoiterBending::with_turns(const Positions& x) const {
     std::vector<Vec3> moments(at(faces_.element_count()));
     parallel_for(faces_.element_count(), grain, [&](int f) {
         const KoiterFaces::FaceEdges& face = faces_.edges_of(f);
-        moments[at(f)] = face.sign.cwiseProduct(face.stiffness * faces_.half_angles(f, x));
+        moments[at(f)] = face.sign.cwiseProduct(face.stiffness * faces_.angles(f, x));
     });
     VecX sums = VecX::Zero(faces_.edge_count());
     for (int f = 0; f < faces_.element_count(); ++f)

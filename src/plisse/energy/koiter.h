@@ -23,8 +23,9 @@ struct KoiterMaterials {
 /// which is Morley's plate element with turns in place of slopes (Grinspun et al. 2006 for the shape operator): unlike
 /// hinges it converges to plate and shell theory on any mesh, twist and saddles included.
 ///
-/// The two faces of an edge share the turn theta between their normals: alpha = theta/2 + phi and theta/2 - phi, and an
-/// edge of one face has alpha = phi. The turns phi, one an edge, are held here; they follow the vertices in x, three to
+/// The two faces of an edge share the turn theta between their normals: alpha = s theta + phi and (1 - s) theta - phi,
+/// where s is such that phi = 0 bends both by the same moment, were it not for their other edges. An edge of one face
+/// has alpha = phi. The turns phi, one an edge, are held here; they follow the vertices in x, three to
 /// a column: x is (x, phi). KoiterBending finds those that minimise the energy. Elements are faces with the corners
 /// beyond their edges.
 class KoiterFaces : public ElementEnergy {
@@ -49,11 +50,12 @@ public:
     struct FaceEdges {
         std::array<int, 3> edges;
         Vec3 sign;      ///< of phi in alpha
+        Vec3 share;     ///< of theta in alpha
         Mat3 stiffness; ///< d2 W / d alpha2, N m
     };
     const FaceEdges& edges_of(int face) const { return faces_[static_cast<std::size_t>(face)].edges; }
     /// alpha - alpha_rest of the face's edges without what phi adds, rad; NaN where a face has no area.
-    Vec3 half_angles(int face, const Positions& x) const;
+    Vec3 angles(int face, const Positions& x) const;
 
 private:
     struct Side {
@@ -66,6 +68,7 @@ private:
         std::array<int, most_vertices> vertices;
         int vertex_count;
     };
+    void share_angles(const Connectivity& connectivity);
     Vec3 turns(int face, const Positions& x) const;
     Dihedral hinge_at(const Side& side, const Positions& x) const;
 
@@ -77,8 +80,8 @@ private:
 
 /// The least of KoiterFaces over the turns of its edges, as an energy of the positions alone. It is quadratic in the
 /// turns with a constant matrix, which is factorised once; gradients need no derivative of the turns. The Hessian is
-/// that with the turns held: it couples vertices alone, and is up to 2.3 times too stiff for the roughest waves of an
-/// irregular plate at rest, 1.02 times for smooth ones (docs/decisions/0019).
+/// that with the turns held: it couples vertices alone, and is too stiff by a factor of 1.02 for the smoothest waves of
+/// an irregular plate at rest, 1.3 for middling and 2.7 for the roughest ones (docs/decisions/0019).
 class KoiterBending : public AssembledEnergy {
 public:
     KoiterBending(const Positions& rest, std::span<const Face> faces, const KoiterMaterials& materials);

@@ -25,19 +25,29 @@ std::unique_ptr<MembraneEnergy> make_membrane(const Model& model, const Position
     return std::make_unique<MembraneEnergy>(rest, faces, std::move(materials));
 }
 
-/// The faces of bodies whose bending is of one model, and the body of each.
+/// The faces of bodies whose bending is of one model.
 struct BentFaces {
     std::vector<Face> faces;
-    std::vector<int> body;
+    std::vector<int> body;          ///< of each
+    std::vector<std::uint8_t> held; ///< whether one script holds the whole face
 };
 
-BentFaces faces_bent_by(BendingModel bending, const Model& model, const std::vector<Face>& faces,
-                        const std::vector<int>& face_body) {
+bool is_held(const Face& face, const LevelLayout& layout) {
+    for (int v : face)
+        for (int a = 0; a < 3; ++a)
+            if (!layout.prescribed[at(3 * v + a)] ||
+                layout.script_of[at(3 * v + a)] != layout.script_of[at(3 * face[0])])
+                return false;
+    return true;
+}
+
+BentFaces faces_bent_by(BendingModel bending, const Model& model, const LevelLayout& layout) {
     BentFaces bent;
-    for (std::size_t f = 0; f < faces.size(); ++f)
-        if (model.bodies[at(face_body[f])].material.bending == bending) {
-            bent.faces.push_back(faces[f]);
-            bent.body.push_back(face_body[f]);
+    for (std::size_t f = 0; f < layout.body_faces.size(); ++f)
+        if (model.bodies[at(layout.body_face_part[f])].material.bending == bending) {
+            bent.faces.push_back(layout.body_faces[f]);
+            bent.body.push_back(layout.body_face_part[f]);
+            bent.held.push_back(is_held(layout.body_faces[f], layout));
         }
     return bent;
 }
@@ -61,9 +71,11 @@ std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& re
 
 std::unique_ptr<KoiterBending> make_koiter(const Model& model, const Positions& rest, const BentFaces& bent) {
     KoiterMaterials materials;
-    for (int b : bent.body) {
-        const Body& body = model.bodies[at(b)];
-        materials.scaled_rigidity.push_back(scaled_rigidity(body.material));
+    for (std::size_t f = 0; f < bent.faces.size(); ++f) {
+        const Body& body = model.bodies[at(bent.body[f])];
+        // A clamp holds normals too: without this they would give way by a turn within the row of faces behind it.
+        constexpr double clamp = 1e4;
+        materials.scaled_rigidity.push_back((bent.held[f] ? clamp : 1) * scaled_rigidity(body.material));
         materials.poisson_ratio.push_back(body.material.poisson_ratio);
         materials.flat.push_back(body.flat_rest_angles);
     }
@@ -72,15 +84,16 @@ std::unique_ptr<KoiterBending> make_koiter(const Model& model, const Positions& 
 
 } // namespace
 
-ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const std::vector<Face>& faces,
-                             const std::vector<int>& face_body, Parts parts)
+ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const LevelLayout& layout, Parts parts)
     : model_(model), vertex_count_(static_cast<int>(rest.cols())) {
+    const std::vector<Face>& faces = layout.body_faces;
+    const std::vector<int>& face_body = layout.body_face_part;
     if (parts.membrane)
         add_term(make_membrane(model, rest, faces, face_body));
     if (parts.bending) {
-        if (const BentFaces bent = faces_bent_by(BendingModel::hinge, model, faces, face_body); !bent.faces.empty())
+        if (const BentFaces bent = faces_bent_by(BendingModel::hinge, model, layout); !bent.faces.empty())
             add_term(make_hinges(model, rest, bent));
-        if (const BentFaces bent = faces_bent_by(BendingModel::koiter, model, faces, face_body); !bent.faces.empty())
+        if (const BentFaces bent = faces_bent_by(BendingModel::koiter, model, layout); !bent.faces.empty())
             elastic_.push_back({nullptr, make_koiter(model, rest, bent)});
     }
     if (!parts.pressure)

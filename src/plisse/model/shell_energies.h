@@ -8,6 +8,7 @@
 #include <plisse/energy/koiter.h>
 #include <plisse/energy/membrane.h>
 #include <plisse/energy/pressure.h>
+#include <plisse/model/discretization.h>
 #include <plisse/model/model.h>
 
 namespace plisse {
@@ -21,9 +22,8 @@ public:
         bool pressure = true;
     };
 
-    /// faces: of bodies only, with vertices of `rest`; face_body: the body of each.
-    ShellEnergies(const Model& model, const Positions& rest, const std::vector<Face>& faces,
-                  const std::vector<int>& face_body, Parts parts);
+    /// Of the body faces of one level, whose rest positions and layout these are.
+    ShellEnergies(const Model& model, const Positions& rest, const LevelLayout& layout, Parts parts);
 
     /// Pressures at time t.
     void set_time(double t);

@@ -113,14 +113,13 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     }
 
     if (proxy) {
-        elasticity_ = std::make_unique<ShellEnergies>(model, hierarchy.finest().rest, fine_layout.body_faces,
-                                                      fine_layout.body_face_part,
+        elasticity_ = std::make_unique<ShellEnergies>(model, hierarchy.finest().rest, fine_layout,
                                                       ShellEnergies::Parts{true, !bending_on_level, true});
         if (bending_on_level)
-            level_bending_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
-                                                             ShellEnergies::Parts{false, true, false});
+            level_bending_ =
+                std::make_unique<ShellEnergies>(model, mesh.rest, layout, ShellEnergies::Parts{false, true, false});
         if (!uses_galerkin())
-            curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
+            curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout,
                                                          ShellEnergies::Parts{true, !bending_on_level, false});
         else {
             carrier_->product = GalerkinProduct(carrier_->prolongation, elasticity_->pairs());
@@ -129,8 +128,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
                              carrier_->product.fine_pairs());
         }
     } else {
-        elasticity_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout.body_faces, layout.body_face_part,
-                                                      ShellEnergies::Parts{});
+        elasticity_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout, ShellEnergies::Parts{});
     }
 
     std::vector<std::uint8_t> obstacle(at(model.part_count()), 0);
