@@ -77,6 +77,15 @@ TEST(PlatesB2, SimplySupportedDiscUnderPressure) {
     EXPECT_NEAR(deflection * rigidity(material) / (.063702 * pressure), 1, 0.02);
 }
 
+TEST(PlatesB2, ASheetThatDoesNotBendHangsAsAMembrane) {
+    Material material = koiter(1e5, 0.3, 0.01);
+    material.bending_scale = 0;
+    Model model = shell_model(irregular_sheet(1, 1, 0.2), material);
+    model.gravity = Track<Vec3>(Vec3(0, -9.81, 0));
+    add_handle(model, "edge", clamped, vertices_where(model, on_square_edge));
+    EXPECT_LT(solve(model).positions.row(1).minCoeff(), -0.01);
+}
+
 TEST(PlatesB3, CantileverUnderADeadTipLoad) {
     constexpr double length = 10, edge = 0.25;
     // One row of cells more: the clamp holds the root and a row behind it.

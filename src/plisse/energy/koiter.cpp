@@ -55,45 +55,47 @@ KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, con
            materials.flat.size() == faces.size());
     const Connectivity connectivity(vertex_count_, faces);
     edge_count_ = connectivity.edge_count();
-    Hinges hinges = interior_hinges(connectivity, faces);
-    hinges_ = std::move(hinges.vertices);
+    const Hinges hinges = interior_hinges(connectivity, faces);
+    hinges_ = hinges.vertices;
+    for (std::size_t h = 0; h < hinges_.size(); ++h)
+        rest_angles_.push_back(materials.flat[at(hinges.faces[h][0])] ? 0.0 : hinge_angle(static_cast<int>(h), rest));
     std::vector<int> hinge_of_edge(at(edge_count_), -1);
     for (int e = 0, h = 0; e < edge_count_; ++e)
         if (!connectivity.is_boundary_edge(e))
             hinge_of_edge[at(e)] = h++;
-    for (std::size_t h = 0; h < hinges_.size(); ++h) {
-        const bool flat = materials.flat[at(hinges.faces[h][0])] != 0;
-        const auto& v = hinges_[h];
-        rest_angles_.push_back(flat ? 0.0
-                                    : dihedral_angle(rest.col(v[0]), rest.col(v[1]), rest.col(v[2]), rest.col(v[3])));
-    }
 
     for (std::size_t f = 0; f < faces.size(); ++f) {
         ElementFace element{};
         element.edges = {connectivity.face_edges()[f], Vec3::Ones(), Vec3::Zero(),
                          turn_stiffness(rest, faces[f], materials.scaled_rigidity[f], materials.poisson_ratio[f])};
-        const auto number_of = [&](int vertex) {
-            const auto end = element.vertices.begin() + element.vertex_count;
-            const auto found = std::find(element.vertices.begin(), end, vertex);
-            if (found == end)
-                element.vertices[at(element.vertex_count++)] = vertex;
-            return static_cast<int>(found - element.vertices.begin());
-        };
-        for (int v : faces[f])
-            number_of(v);
         for (int k = 0; k < 3; ++k) {
             Side& side = element.sides[at(k)];
             side.hinge = hinge_of_edge[at(element.edges.edges[at(k)])];
-            if (side.hinge < 0)
-                continue;
-            const auto& corners = hinges_[at(side.hinge)];
-            std::transform(corners.begin(), corners.end(), side.corners.begin(), number_of);
-            if (hinges.faces[at(side.hinge)][0] != static_cast<int>(f))
+            if (side.hinge >= 0 && hinges.faces[at(side.hinge)][0] != static_cast<int>(f))
                 element.edges.sign[k] = -1;
         }
+        number_vertices(element, faces[f]);
         faces_.push_back(element);
     }
     share_angles(connectivity);
+}
+
+/// The face's own vertices first.
+void KoiterFaces::number_vertices(ElementFace& element, const Face& face) const {
+    const auto number_of = [&](int vertex) {
+        const auto end = element.vertices.begin() + element.vertex_count;
+        const auto found = std::find(element.vertices.begin(), end, vertex);
+        if (found == end)
+            element.vertices[at(element.vertex_count++)] = vertex;
+        return static_cast<int>(found - element.vertices.begin());
+    };
+    for (int v : face)
+        number_of(v);
+    for (Side& side : element.sides)
+        if (side.hinge >= 0) {
+            const auto& corners = hinges_[at(side.hinge)];
+            std::transform(corners.begin(), corners.end(), side.corners.begin(), number_of);
+        }
 }
 
 void KoiterFaces::share_angles(const Connectivity& connectivity) {
@@ -112,6 +114,11 @@ std::span<const int> KoiterFaces::vertices(int face) const {
     return std::span(element.vertices).first(at(element.vertex_count));
 }
 
+double KoiterFaces::hinge_angle(int hinge, const Positions& x) const {
+    const auto& v = hinges_[at(hinge)];
+    return dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
+}
+
 Dihedral KoiterFaces::hinge_at(const Side& side, const Positions& x) const {
     const auto& v = hinges_[at(side.hinge)];
     return dihedral(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
@@ -120,11 +127,8 @@ Dihedral KoiterFaces::hinge_at(const Side& side, const Positions& x) const {
 Vec3 KoiterFaces::angles(int face, const Positions& x) const {
     Vec3 result = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
-        if (const int h = faces_[at(face)].sides[at(k)].hinge; h >= 0) {
-            const auto& v = hinges_[at(h)];
-            result[k] = edges_of(face).share[k] *
-                        (dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3])) - rest_angles_[at(h)]);
-        }
+        if (const int h = faces_[at(face)].sides[at(k)].hinge; h >= 0)
+            result[k] = edges_of(face).share[k] * (hinge_angle(h, x) - rest_angles_[at(h)]);
     return result;
 }
 

@@ -11,7 +11,7 @@ namespace plisse {
 
 /// Bending material of each face.
 struct KoiterMaterials {
-    std::vector<double> scaled_rigidity; ///< c D, N m; c = 1 is plate theory
+    std::vector<double> scaled_rigidity; ///< c D > 0, N m; c = 1 is plate theory
     std::vector<double> poisson_ratio;   ///< in (-1, 0.5)
     std::vector<std::uint8_t> flat;      ///< 1: rest curvature 0 whatever the rest positions say
 };
@@ -25,9 +25,9 @@ struct KoiterMaterials {
 ///
 /// The two faces of an edge share the turn theta between their normals: alpha = s theta + phi and (1 - s) theta - phi,
 /// where s is such that phi = 0 bends both by the same moment, were it not for their other edges. An edge of one face
-/// has alpha = phi. The turns phi, one an edge, are held here; they follow the vertices in x, three to
-/// a column: x is (x, phi). KoiterBending finds those that minimise the energy. Elements are faces with the corners
-/// beyond their edges.
+/// has alpha = phi. The turns phi, one an edge, are held here; they follow the vertices in x, three to a column: x is
+/// (x, phi). KoiterBending finds those that minimise the energy. Elements are faces with the corners beyond their
+/// edges.
 class KoiterFaces : public ElementEnergy {
 public:
     /// rest: rest positions, m; faces of positive area, at most two on an edge; one material a face.
@@ -68,7 +68,9 @@ private:
         std::array<int, most_vertices> vertices;
         int vertex_count;
     };
+    void number_vertices(ElementFace& element, const Face& face) const;
     void share_angles(const Connectivity& connectivity);
+    double hinge_angle(int hinge, const Positions& x) const;
     Vec3 turns(int face, const Positions& x) const;
     Dihedral hinge_at(const Side& side, const Positions& x) const;
 

@@ -25,7 +25,7 @@ std::unique_ptr<MembraneEnergy> make_membrane(const Model& model, const Position
     return std::make_unique<MembraneEnergy>(rest, faces, std::move(materials));
 }
 
-/// The faces of bodies whose bending is of one model.
+/// The faces of bodies that bend, by one model.
 struct BentFaces {
     std::vector<Face> faces;
     std::vector<int> body;          ///< of each
@@ -44,7 +44,8 @@ bool is_held(const Face& face, const LevelLayout& layout) {
 BentFaces faces_bent_by(BendingModel bending, const Model& model, const LevelLayout& layout) {
     BentFaces bent;
     for (std::size_t f = 0; f < layout.body_faces.size(); ++f)
-        if (model.bodies[at(layout.body_face_part[f])].material.bending == bending) {
+        if (const Material& material = model.bodies[at(layout.body_face_part[f])].material;
+            material.bending == bending && material.bending_scale > 0) {
             bent.faces.push_back(layout.body_faces[f]);
             bent.body.push_back(layout.body_face_part[f]);
             bent.held.push_back(is_held(layout.body_faces[f], layout));
