@@ -25,14 +25,6 @@ Material koiter(double youngs_modulus, double poisson_ratio, double thickness, d
     return {density, youngs_modulus, poisson_ratio, thickness, 1, std::nullopt, BendingModel::koiter};
 }
 
-TriangleMesh irregular_sheet(double length, double width, double edge_length) {
-    GeneratorOptions sheet;
-    sheet.shape = GeneratorShape::sheet;
-    sheet.size = Vec3(length, width, 0);
-    sheet.edge_length = edge_length;
-    return generate_mesh(sheet);
-}
-
 bool on_square_edge(const Vec3& p) {
     return std::max(std::abs(p.x()), std::abs(p.z())) > 0.5 - 1e-9;
 }
@@ -47,7 +39,7 @@ double rigidity(const Material& material) {
 
 TEST(PlatesB2, SimplySupportedSquareUnderPressure) {
     const Material material = koiter(1e7, 0.3, 0.01);
-    Model model = shell_model(irregular_sheet(1, 1, 1.0 / 24), material);
+    Model model = shell_model(sheet_mesh(1, 1.0 / 24), material);
     add_handle(model, "edge", only_y, vertices_where(model, on_square_edge));
     constexpr double pressure = 0.1;
     add_load(model, Load::Kind::traction, vertices_where(model, anywhere), Vec3(0, -pressure, 0));
@@ -80,7 +72,7 @@ TEST(PlatesB2, SimplySupportedDiscUnderPressure) {
 TEST(PlatesB2, ASheetThatDoesNotBendHangsAsAMembrane) {
     Material material = koiter(1e5, 0.3, 0.01);
     material.bending_scale = 0;
-    Model model = shell_model(irregular_sheet(1, 1, 0.2), material);
+    Model model = shell_model(sheet_mesh(1, 0.2), material);
     model.gravity = Track<Vec3>(Vec3(0, -9.81, 0));
     add_handle(model, "edge", clamped, vertices_where(model, on_square_edge));
     EXPECT_LT(solve(model).positions.row(1).minCoeff(), -0.01);
@@ -128,7 +120,7 @@ TEST(PlatesK1, PinnedColumnBucklesAsTheElastica) {
 double buckled_by(double share) {
     const Material material = koiter(1e7, 0.3, 0.01);
     const double critical = 4 * pi * pi * rigidity(material);
-    Model model = shell_model(irregular_sheet(1, 1, 1.0 / 24), material);
+    Model model = shell_model(sheet_mesh(1, 1.0 / 24), material);
     for (int v = 0; v < model.mesh.vertex_count(); ++v)
         model.start(1, v) = 1e-4 * std::cos(pi * model.start(0, v)) * std::cos(pi * model.start(2, v));
     add_handle(model, "edge", only_y, vertices_where(model, on_square_edge));

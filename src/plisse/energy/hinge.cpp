@@ -7,34 +7,15 @@
 
 #include <Eigen/Geometry>
 
-#include <plisse/energy/positive_part.h>
-#include <plisse/geometry/dihedral.h>
+#include <plisse/energy/dihedral_terms.h>
 
 namespace plisse {
 
 namespace {
 
-Dihedral dihedral_at(const std::array<int, 4>& v, const Positions& x) {
-    return dihedral(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
-}
-
 /// Does the face run along its edge from a to b?
 bool runs_along(const Face& face, int a, int b) {
     return (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) || (face[2] == a && face[0] == b);
-}
-
-/// Positive part of the Hessian of k/2 (theta - rest)^2; `moment` is k (theta - rest). None of the 2x2 matrices has two
-/// positive eigenvalues, so each is one rank-one term.
-Mat12 projected_hessian(const Dihedral& hinge, double stiffness, double moment) {
-    DihedralModes factors = dihedral_modes(hinge);
-    for (Mat2& matrix : factors.curvature)
-        matrix *= moment;
-    factors.curvature[0](0, 0) += 2 * stiffness; // d theta = -sqrt(2) modes.col(0)
-    Eigen::Matrix<double, 12, 4> roots;
-    for (int k = 0; k < 4; ++k)
-        roots.col(k).noalias() =
-            factors.modes.middleCols<2>(2 * k) * positive_root(factors.curvature[static_cast<std::size_t>(k)]);
-    return roots.lazyProduct(roots.transpose());
 }
 
 } // namespace
@@ -77,8 +58,7 @@ HingeEnergy::HingeEnergy(const Positions& rest, std::vector<std::array<int, 4>> 
 }
 
 double HingeEnergy::angle(int hinge, const Positions& x) const {
-    const std::array<int, 4>& v = hinges_[static_cast<std::size_t>(hinge)];
-    return dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
+    return dihedral_angle_at(hinges_[static_cast<std::size_t>(hinge)], x);
 }
 
 double HingeEnergy::value(int hinge, const Positions& x) const {

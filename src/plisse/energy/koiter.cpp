@@ -9,8 +9,7 @@
 #include <Eigen/SparseCholesky>
 
 #include <plisse/base/parallel.h>
-#include <plisse/energy/positive_part.h>
-#include <plisse/geometry/dihedral.h>
+#include <plisse/energy/dihedral_terms.h>
 
 namespace plisse {
 
@@ -37,16 +36,6 @@ Mat3 turn_stiffness(const Positions& rest, const Face& face, double scaled_rigid
            ((1 - poisson_ratio) * dots.cwiseAbs2().cwiseQuotient(products) + poisson_ratio * products);
 }
 
-/// Positive part of moment * d2 theta.
-Mat12 positive_curvature(const Dihedral& hinge, double moment) {
-    DihedralModes factors = dihedral_modes(hinge);
-    Eigen::Matrix<double, 12, 4> roots;
-    for (int k = 0; k < 4; ++k)
-        roots.col(k).noalias() = factors.modes.middleCols<2>(2 * k) *
-                                 positive_root(Mat2(moment * factors.curvature[static_cast<std::size_t>(k)]));
-    return roots.lazyProduct(roots.transpose());
-}
-
 } // namespace
 
 KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, const KoiterMaterials& materials)
@@ -58,7 +47,7 @@ KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, con
     const Hinges hinges = interior_hinges(connectivity, faces);
     hinges_ = hinges.vertices;
     for (std::size_t h = 0; h < hinges_.size(); ++h)
-        rest_angles_.push_back(materials.flat[at(hinges.faces[h][0])] ? 0.0 : hinge_angle(static_cast<int>(h), rest));
+        rest_angles_.push_back(materials.flat[at(hinges.faces[h][0])] ? 0.0 : dihedral_angle_at(hinges_[h], rest));
     std::vector<int> hinge_of_edge(at(edge_count_), -1);
     for (int e = 0, h = 0; e < edge_count_; ++e)
         if (!connectivity.is_boundary_edge(e))
@@ -114,21 +103,11 @@ std::span<const int> KoiterFaces::vertices(int face) const {
     return std::span(element.vertices).first(at(element.vertex_count));
 }
 
-double KoiterFaces::hinge_angle(int hinge, const Positions& x) const {
-    const auto& v = hinges_[at(hinge)];
-    return dihedral_angle(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
-}
-
-Dihedral KoiterFaces::hinge_at(const Side& side, const Positions& x) const {
-    const auto& v = hinges_[at(side.hinge)];
-    return dihedral(x.col(v[0]), x.col(v[1]), x.col(v[2]), x.col(v[3]));
-}
-
 Vec3 KoiterFaces::angles(int face, const Positions& x) const {
     Vec3 result = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
         if (const int h = faces_[at(face)].sides[at(k)].hinge; h >= 0)
-            result[k] = edges_of(face).share[k] * (hinge_angle(h, x) - rest_angles_[at(h)]);
+            result[k] = edges_of(face).share[k] * (dihedral_angle_at(hinges_[at(h)], x) - rest_angles_[at(h)]);
     return result;
 }
 
@@ -157,7 +136,7 @@ void KoiterFaces::gradient(int face, const Positions& x, double* gradient) const
         const Side& side = element.sides[at(k)];
         if (side.hinge < 0)
             continue;
-        const Vec12 slope = dihedral_gradient(hinge_at(side, x));
+        const Vec12 slope = dihedral_gradient(dihedral_at(hinges_[at(side.hinge)], x));
         const double share = element.edges.share[k];
         for (int c = 0; c < 4; ++c)
             result.segment<3>(3 * side.corners[at(c)]) += share * moments[k] * slope.segment<3>(3 * c);
@@ -176,10 +155,10 @@ void KoiterFaces::hessian(int face, const Positions& x, bool project, double* he
         const Side& side = element.sides[at(k)];
         if (side.hinge < 0)
             continue;
-        const Dihedral state = hinge_at(side, x);
+        const Dihedral state = dihedral_at(hinges_[at(side.hinge)], x);
         const Vec12 slope = dihedral_gradient(state);
         const double share = element.edges.share[k], moment = share * moments[k];
-        const Mat12 curved = project ? positive_curvature(state, moment) : Mat12(moment * dihedral_hessian(state));
+        const Mat12 curved = project ? projected_hessian(state, 0, moment) : Mat12(moment * dihedral_hessian(state));
         for (int c = 0; c < 4; ++c) {
             slopes.block<3, 1>(3 * side.corners[at(c)], k) += share * slope.segment<3>(3 * c);
             for (int d = 0; d < 4; ++d)

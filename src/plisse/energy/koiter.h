@@ -5,7 +5,6 @@
 
 #include <plisse/energy/assembly.h>
 #include <plisse/energy/hinge.h>
-#include <plisse/geometry/dihedral.h>
 
 namespace plisse {
 
@@ -70,9 +69,7 @@ private:
     };
     void number_vertices(ElementFace& element, const Face& face) const;
     void share_angles(const Connectivity& connectivity);
-    double hinge_angle(int hinge, const Positions& x) const;
     Vec3 turns(int face, const Positions& x) const;
-    Dihedral hinge_at(const Side& side, const Positions& x) const;
 
     int vertex_count_, edge_count_;
     std::vector<ElementFace> faces_;
