@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <plisse/base/parallel.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/drive/run.h>
 #include <plisse/scene/build_model.h>
 #include <plisse/scene/whole_file.h>
@@ -36,9 +37,7 @@ public:
     }
     /// The last state of level 0, shown on the finest mesh.
     Positions shown_on_finest(ProlongationOperator kind) const {
-        const HierarchyLevel& coarse = hierarchy_.levels.front();
-        return Prolongation(coarse.rest, coarse.faces, coarse.to_finest, hierarchy_.finest().rest, kind)
-            .apply(coarsest_);
+        return prolongation_to_finest(hierarchy_, 0, kind).apply(coarsest_);
     }
 
 private:

@@ -21,7 +21,9 @@ struct ProlongArguments {
 
 ProlongationOperator operator_named(const std::string& name) {
     if (name == "affine")
-        throw InputError("--operator affine", "not supported in this version", "give shell or intrinsic");
+        throw InputError("--operator affine", "not supported in this version", "give shell, intrinsic or blend");
+    if (name == "blend")
+        return ProlongationOperator::blend;
     return name == "shell" ? ProlongationOperator::shell : ProlongationOperator::intrinsic;
 }
 

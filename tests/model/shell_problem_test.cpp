@@ -63,7 +63,8 @@ TEST_P(ProxyDerivatives, GradientMatchesCentralDifferences) {
 INSTANTIATE_TEST_SUITE_P(Levels, ProxyDerivatives,
                          testing::Combine(testing::Values(0, 1, 2),
                                           testing::Values(BendingOn::finest, BendingOn::level),
-                                          testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic),
+                                          testing::Values(ProlongationOperator::shell, ProlongationOperator::intrinsic,
+                                                          ProlongationOperator::blend, ProlongationOperator::affine),
                                           testing::Values(BendingModel::hinge, BendingModel::koiter)));
 
 /// The limit acts on the level's own faces, whatever carries the elasticity.

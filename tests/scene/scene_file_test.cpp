@@ -134,9 +134,7 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
         return R"({"plisse": 1, "bodies": [{"name": "a", "mesh": "a.obj")" + body + "}]" + rest + "}";
     };
     const std::vector<std::string> later = {
-        with(R"(, "hierarchy": {"operator": "affine"})"),
         with(R"(, "hierarchy": {"operator": "loop"})"),
-        with(R"(, "hierarchy": {"operator": "blend"})"),
         with(R"(, "hierarchy": {"source": "loop"})"),
         with(R"(, "solve": {"method": "rmtr"})"),
         with(R"(, "obstacles": [{"mesh": "b.obj", "motion": {"frames": "f/*.obj", "dt": 0.04}}])"),

@@ -7,6 +7,7 @@
 
 #include <plisse/base/random.h>
 #include <plisse/transfer/galerkin.h>
+#include <plisse/transfer/prolongation.h>
 
 #include "linalg/dense_system.h"
 
@@ -14,19 +15,19 @@ using namespace plisse;
 
 namespace {
 
-/// A bent 3x3 coarse grid with fine vertices scattered over its faces, off the surface.
+/// A bent coarse grid of rows x 3 vertices with fine vertices scattered over its faces, off the surface.
 struct Patch {
-    Positions coarse_rest{3, 9};
+    Positions coarse_rest;
     std::vector<Face> faces;
     std::vector<Anchor> anchors;
     Positions fine_rest;
     Random random{7};
 
-    explicit Patch(int fine_count, bool flat = false) {
-        for (int i = 0; i < 3; ++i)
+    explicit Patch(int fine_count, bool flat = false, int rows = 3) : coarse_rest(3, 3 * rows) {
+        for (int i = 0; i < rows; ++i)
             for (int j = 0; j < 3; ++j)
                 coarse_rest.col(3 * i + j) = Vec3(i + 0.1 * j, flat ? 0.0 : 0.3 * i * i - 0.2 * j * i, j);
-        for (int i = 0; i < 2; ++i)
+        for (int i = 0; i + 1 < rows; ++i)
             for (int j = 0; j < 2; ++j) {
                 const int a = 3 * i + j;
                 faces.push_back({a, a + 1, a + 4});
@@ -35,7 +36,7 @@ struct Patch {
         fine_rest.resize(3, fine_count);
         for (int v = 0; v < fine_count; ++v) {
             Anchor anchor;
-            anchor.face = random.below(8);
+            anchor.face = random.below(static_cast<int>(faces.size()));
             anchor.weights = Vec3(random.uniform(), random.uniform(), random.uniform());
             anchor.weights /= anchor.weights.sum();
             const Face& face = faces[static_cast<std::size_t>(anchor.face)];
@@ -54,17 +55,61 @@ struct Patch {
             x.col(v) += noise(size);
         return x;
     }
-    Prolongation prolongation() const { return {coarse_rest, faces, anchors, fine_rest}; }
+    /// In place of affine, some linear operator.
+    Prolongation prolongation(ProlongationOperator kind = ProlongationOperator::shell) const {
+        if (kind == ProlongationOperator::affine)
+            return {some_weights(), faces, anchors, fine_rest};
+        return {coarse_rest, faces, anchors, fine_rest, kind};
+    }
+    /// Four or fewer in a row, which sum to 1.
+    ProlongationWeights some_weights() const {
+        ProlongationWeights weights(fine_rest.cols(), coarse_rest.cols());
+        std::vector<Eigen::Triplet<double>> entries;
+        for (int i = 0; i < weights.rows(); ++i)
+            for (int k = 0; k < 4; ++k)
+                entries.emplace_back(i, (i * (k + 1) + k) % static_cast<int>(coarse_rest.cols()), k == 3 ? -0.2 : 0.4);
+        weights.setFromTriplets(entries.begin(), entries.end());
+        return weights;
+    }
 };
 
-TEST(Prolongation, RecoversTheRestShape) {
-    const Patch patch(50);
-    EXPECT_LT((patch.prolongation().apply(patch.coarse_rest) - patch.fine_rest).cwiseAbs().maxCoeff(), 1e-14);
+constexpr std::array all_kinds{ProlongationOperator::shell, ProlongationOperator::intrinsic,
+                               ProlongationOperator::blend, ProlongationOperator::affine};
+
+class Operators : public testing::TestWithParam<ProlongationOperator> {
+protected:
+    bool keeps_rest() const {
+        return GetParam() == ProlongationOperator::shell || GetParam() == ProlongationOperator::blend;
+    }
+};
+std::string name_of(const testing::TestParamInfo<ProlongationOperator>& tested) {
+    constexpr std::array names{"shell", "intrinsic", "blend", "linear"};
+    return names[static_cast<std::size_t>(tested.param)];
+}
+INSTANTIATE_TEST_SUITE_P(All, Operators, testing::ValuesIn(all_kinds), name_of);
+
+/// J as a dense matrix.
+Eigen::MatrixXd dense(const Prolongation& p, const Positions& x) {
+    const ProlongationJacobian jacobian = p.jacobian(x);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(3 * p.fine_count(), 3 * p.coarse_count());
+    for (int i = 0; i < p.fine_count(); ++i) {
+        const auto stencil = p.stencils().of(i);
+        for (std::size_t k = 0; k < stencil.size(); ++k)
+            matrix.block<3, 3>(3 * i, 3 * stencil[k]) = jacobian.rows(i).middleCols<3>(3 * static_cast<int>(k));
+    }
+    return matrix;
 }
 
-TEST(Prolongation, FollowsRigidMotion) {
+TEST_P(Operators, RecoverTheRestShapeWhereTheyHaveArms) {
+    const Patch patch(50);
+    const double error =
+        (patch.prolongation(GetParam()).apply(patch.coarse_rest) - patch.fine_rest).cwiseAbs().maxCoeff();
+    EXPECT_EQ(error < 1e-14, keeps_rest());
+}
+
+TEST_P(Operators, FollowRigidMotion) {
     Patch patch(50);
-    const Prolongation p = patch.prolongation();
+    const Prolongation p = patch.prolongation(GetParam());
     const Mat3 q = Eigen::Quaterniond(0.3, -0.5, 0.8, 0.1).normalized().toRotationMatrix();
     const Vec3 shift(1, -2, 3);
     const Positions x = patch.deformed(0.2);
@@ -73,60 +118,73 @@ TEST(Prolongation, FollowsRigidMotion) {
     EXPECT_LT((p.apply(moved) - expected).cwiseAbs().maxCoeff(), 1e-13);
 }
 
-TEST(Prolongation, IsBarycentricOnAFlatSheet) {
+TEST(Prolongation, KeepsAFlatSheetThatIsStretchedEvenly) {
+    Mat3 stretch;
+    stretch << 1.3, 0.2, 0.1, -0.1, 1, 0.4, 0.2, 0.3, 0.8;
     Patch patch(50, true);
-    const Prolongation p = patch.prolongation();
-    EXPECT_LT(p.offsets().cwiseAbs().maxCoeff(), 1e-15);
-    const Positions x = patch.deformed(0.3);
-    const Prolongation intrinsic(patch.coarse_rest, patch.faces, patch.anchors, patch.fine_rest,
-                                 ProlongationOperator::intrinsic);
-    EXPECT_LT((p.apply(x) - intrinsic.apply(x)).cwiseAbs().maxCoeff(), 1e-14);
+    for (const auto kind :
+         {ProlongationOperator::shell, ProlongationOperator::intrinsic, ProlongationOperator::blend}) {
+        const Prolongation p = patch.prolongation(kind);
+        EXPECT_LT((p.apply(stretch * patch.coarse_rest) - stretch * patch.fine_rest).cwiseAbs().maxCoeff(), 1e-14);
+    }
 }
 
-TEST(Prolongation, JacobianMatchesCentralDifferences) {
+TEST(Prolongation, IsBarycentricOnAFlatSheet) {
+    Patch patch(50, true);
+    const Positions x = patch.deformed(0.3);
+    const Positions straight = patch.prolongation(ProlongationOperator::intrinsic).apply(x);
+    EXPECT_LT((patch.prolongation().apply(x) - straight).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST_P(Operators, JacobianMatchesCentralDifferences) {
     Patch patch(30);
-    const Prolongation p = patch.prolongation();
+    const Prolongation p = patch.prolongation(GetParam());
     const Positions x = patch.deformed(0.2);
-    const auto blocks = p.jacobian(x);
+    const Eigen::MatrixXd jacobian = dense(p, x);
     const double h = 1e-6;
-    double error = 0, size = 0;
+    double error = 0;
     for (int v = 0; v < 9; ++v)
         for (int axis = 0; axis < 3; ++axis) {
             Positions plus = x, minus = x;
             plus(axis, v) += h;
             minus(axis, v) -= h;
-            const Positions difference = (p.apply(plus) - p.apply(minus)) / (2 * h);
-            for (int i = 0; i < 30; ++i) {
-                Vec3 expected = Vec3::Zero();
-                const Face& face =
-                    patch.faces[static_cast<std::size_t>(patch.anchors[static_cast<std::size_t>(i)].face)];
-                for (int k = 0; k < 3; ++k)
-                    if (face[static_cast<std::size_t>(k)] == v)
-                        expected = blocks[static_cast<std::size_t>(i)].col(3 * k + axis);
-                error = std::max(error, (difference.col(i) - expected).norm());
-                size = std::max(size, expected.norm());
-            }
+            const VecX difference = ((p.apply(plus) - p.apply(minus)) / (2 * h)).reshaped();
+            error = std::max(error, (difference - jacobian.col(3 * v + axis)).cwiseAbs().maxCoeff());
         }
-    EXPECT_LT(error, 1e-6 * size);
+    EXPECT_LT(error, 1e-6 * jacobian.cwiseAbs().maxCoeff());
 }
 
-TEST(Prolongation, PullBackIsTheTransposeOfTheJacobian) {
+TEST_P(Operators, PullBackIsTheTransposeOfTheJacobian) {
     Patch patch(40);
-    const Prolongation p = patch.prolongation();
+    const Prolongation p = patch.prolongation(GetParam());
     const Positions x = patch.deformed(0.2);
     Positions g(3, 40);
     for (int i = 0; i < 40; ++i)
         g.col(i) = patch.noise(1);
-    Positions expected = Positions::Zero(3, 9);
-    const auto blocks = p.jacobian(x);
-    for (std::size_t i = 0; i < 40; ++i) {
-        const Face& face = patch.faces[static_cast<std::size_t>(patch.anchors[i].face)];
-        const Eigen::Matrix<double, 9, 1> pulled = blocks[i].transpose() * g.col(static_cast<int>(i));
-        for (int k = 0; k < 3; ++k)
-            expected.col(face[static_cast<std::size_t>(k)]) += pulled.segment<3>(3 * k);
-    }
-    EXPECT_LT((p.pull_back(x, g) - expected).cwiseAbs().maxCoeff(), 1e-13);
+    const VecX expected = dense(p, x).transpose() * g.reshaped();
+    EXPECT_LT((p.pull_back(x, g).reshaped() - expected).cwiseAbs().maxCoeff(), 1e-13);
     EXPECT_LT((p.pull_back_lagged(g).rowwise().sum() - g.rowwise().sum()).norm(), 1e-13);
+}
+
+/// A flat strip wound into a part of a cylinder: shell leaves it straight between coarse edges.
+TEST(Prolongation, BlendBulgesBetweenFacesAtAnAngle) {
+    constexpr int rows = 9;
+    constexpr double radius = 2.5;
+    Patch patch(400, true, rows);
+    Positions wound(3, 3 * rows);
+    for (int v = 0; v < wound.cols(); ++v) {
+        const double angle = patch.coarse_rest(0, v) / radius;
+        wound.col(v) = Vec3(radius * std::sin(angle), radius * std::cos(angle), patch.coarse_rest(2, v));
+    }
+    const auto worst_distance = [&](ProlongationOperator kind) {
+        const Positions fine = patch.prolongation(kind).apply(wound);
+        double worst = 0;
+        for (int i = 0; i < fine.cols(); ++i)
+            if (const double x = patch.fine_rest(0, i); x > 1.2 && x < rows - 2.2) // off the ends, where nothing turns
+                worst = std::max(worst, std::abs(std::hypot(fine(0, i), fine(1, i)) - radius));
+        return worst;
+    };
+    EXPECT_LT(worst_distance(ProlongationOperator::blend), 0.25 * worst_distance(ProlongationOperator::shell));
 }
 
 TEST(Prolongation, CollapsedTrianglesGiveFinitePositions) {
@@ -148,9 +206,9 @@ TEST(Prolongation, ConservesTotalValues) {
     EXPECT_GE(coarse.minCoeff(), 0);
 }
 
-TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
+TEST_P(Operators, GalerkinProductEqualsTheDenseTripleProduct) {
     Patch patch(40);
-    const Prolongation p = patch.prolongation();
+    const Prolongation p = patch.prolongation(GetParam());
     const Positions x = patch.deformed(0.2);
     std::vector<std::vector<int>> elements;
     std::vector<Eigen::MatrixXd> hessians;
@@ -174,14 +232,7 @@ TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
         elements.push_back(vertices);
         hessians.push_back(h);
     }
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(120, 27);
-    const auto blocks = p.jacobian(x);
-    for (std::size_t i = 0; i < 40; ++i) {
-        const Face& face = patch.faces[static_cast<std::size_t>(patch.anchors[i].face)];
-        for (int k = 0; k < 3; ++k)
-            jacobian.block<3, 3>(3 * static_cast<int>(i), 3 * face[static_cast<std::size_t>(k)]) =
-                blocks[i].middleCols<3>(3 * k);
-    }
+    const Eigen::MatrixXd jacobian = dense(p, x);
     const Eigen::MatrixXd expected = jacobian.transpose() * fine * jacobian;
 
     std::vector<Edge> pairs;
@@ -190,7 +241,7 @@ TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
             for (int w : vertices)
                 if (v < w)
                     pairs.push_back({v, w});
-    GalerkinProduct product(p, pairs);
+    GalerkinProduct product(p.stencils(), p.coarse_count(), pairs);
     NewtonSystem fine_system(std::vector<std::uint8_t>(120, 0), product.fine_pairs());
     fine_system.begin({});
     for (std::size_t e = 0; e < elements.size(); ++e)
@@ -198,7 +249,7 @@ TEST(GalerkinProduct, EqualsTheDenseTripleProduct) {
     NewtonSystem system(std::vector<std::uint8_t>(27, 0), product.pairs());
     product.place_in(system);
     system.begin({});
-    product.add(blocks, fine_system, system);
+    product.add(p.jacobian(x), fine_system, system);
     const Eigen::MatrixXd actual = dense(system);
     EXPECT_LT((actual - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.cwiseAbs().maxCoeff());
 }

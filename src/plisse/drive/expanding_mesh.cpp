@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <plisse/decimate/level_prolongation.h>
+
 namespace plisse {
 
 namespace {
@@ -42,8 +44,8 @@ ExpandingMesh::ExpandingMesh(const Discretization& discretization, int from, con
 void ExpandingMesh::set_targets(int from, const Positions& x, double t) {
     const HierarchyLevel& coarse = discretization_.mesh(from);
     const HierarchyLevel& fine = discretization_.mesh(from + 1);
-    const Prolongation prolongation(coarse.rest, coarse.faces, coarse.to_next, fine.rest,
-                                    discretization_.model().hierarchy.prolongation);
+    const Prolongation prolongation =
+        prolongation_to_next(discretization_.hierarchy(), from, discretization_.model().hierarchy.prolongation);
     Positions prolonged = prolongation.apply(x);
     const Positions script = discretization_.script(from + 1, t);
     const auto& prescribed = discretization_.layout(from + 1).prescribed;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include <plisse/base/error.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/linalg/cholesky.h>
 #include <plisse/mesh/connectivity.h>
 #include <plisse/spatial/intersections.h>
@@ -177,7 +178,7 @@ Positions Discretization::start(int level) const {
 Positions Discretization::restricted_start(int level) const {
     const HierarchyLevel& coarse = mesh(level);
     const Positions target = start(finest());
-    const Prolongation prolongation(coarse.rest, coarse.faces, coarse.to_finest, hierarchy_.finest().rest);
+    const Prolongation prolongation = prolongation_to_finest(hierarchy_, level, ProlongationOperator::shell);
     std::vector<std::uint8_t> fixed = layout(level).prescribed;
     Positions x = coarse.rest;
     for (std::size_t v = 0; v < coarse.label.size(); ++v)

@@ -7,7 +7,7 @@
 
 #include <plisse/mesh/triangle_mesh.h>
 #include <plisse/model/track.h>
-#include <plisse/transfer/prolongation.h>
+#include <plisse/transfer/prolongation_operator.h>
 
 namespace plisse {
 

@@ -9,6 +9,7 @@
 
 #include <plisse/base/parallel.h>
 #include <plisse/contact/candidates.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/geometry/triangle_motion.h>
 #include <plisse/spatial/box.h>
 
@@ -103,8 +104,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     const bool bending_on_level = proxy && model.hierarchy.bending_on == BendingOn::level;
 
     if (level < finest) {
-        Prolongation prolongation(mesh.rest, mesh.faces, mesh.to_finest, hierarchy.finest().rest,
-                                  model.hierarchy.prolongation);
+        Prolongation prolongation = prolongation_to_finest(hierarchy, level, model.hierarchy.prolongation);
         mass_ = prolongation.pull_back_values(dead_loads_.masses());
         if (proxy)
             carrier_ = std::make_unique<Carrier>(Carrier{std::move(prolongation), {}, {}});
@@ -122,7 +122,8 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
             curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout,
                                                          ShellEnergies::Parts{true, !bending_on_level, false});
         else {
-            carrier_->product = GalerkinProduct(carrier_->prolongation, elasticity_->pairs());
+            carrier_->product =
+                GalerkinProduct(carrier_->prolongation.stencils(), vertex_count(), elasticity_->pairs());
             carrier_->fine_hessian =
                 NewtonSystem(std::vector<std::uint8_t>(3 * at(carrier_->prolongation.fine_count()), 0),
                              carrier_->product.fine_pairs());
@@ -254,9 +255,8 @@ void ShellProblem::set_step(const Positions& current, const Positions& anchor, d
     gravity_forces_ = dead_loads_.weight(t);
     load_forces_ = dead_loads_.loads(t);
     if (!carrier_ && level_ < discretization_.finest()) {
-        const HierarchyLevel& mesh = discretization_.mesh(level_);
-        const Prolongation prolongation(mesh.rest, mesh.faces, mesh.to_finest,
-                                        discretization_.hierarchy().finest().rest);
+        const Prolongation prolongation =
+            prolongation_to_finest(discretization_.hierarchy(), level_, ProlongationOperator::intrinsic);
         gravity_forces_ = prolongation.pull_back_lagged(gravity_forces_);
         load_forces_ = prolongation.pull_back_lagged(load_forces_);
     }

@@ -12,6 +12,7 @@
 #include <plisse/model/strain_limit.h>
 #include <plisse/solve/objective.h>
 #include <plisse/transfer/galerkin.h>
+#include <plisse/transfer/prolongation.h>
 
 namespace plisse {
 

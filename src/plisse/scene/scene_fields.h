@@ -59,7 +59,8 @@ inline const Choices<BendingModel>& choices_of(BendingModel) {
 }
 inline const Choices<ProlongationOperator>& choices_of(ProlongationOperator) {
     using P = ProlongationOperator;
-    static const Choices<P> all{{{"shell", P::shell}, {"intrinsic", P::intrinsic}}, {"affine", "loop", "blend"}};
+    static const Choices<P> all{
+        {{"shell", P::shell}, {"intrinsic", P::intrinsic}, {"blend", P::blend}, {"affine", P::affine}}, {"loop"}};
     return all;
 }
 inline const Choices<BendingOn>& choices_of(BendingOn) {

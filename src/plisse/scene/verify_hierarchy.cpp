@@ -7,9 +7,9 @@
 #include <Eigen/Geometry>
 
 #include <plisse/base/random.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/model/track.h>
 #include <plisse/spatial/box.h>
-#include <plisse/transfer/prolongation.h>
 
 namespace plisse {
 
@@ -107,7 +107,7 @@ std::vector<LevelVerification> verify_hierarchy(const Hierarchy& hierarchy) {
     std::vector<LevelVerification> results;
     for (int l = 0; l + 1 < hierarchy.level_count(); ++l) {
         const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(l)];
-        const Prolongation prolongation(level.rest, level.faces, level.to_finest, finest.rest);
+        const Prolongation prolongation = prolongation_to_finest(hierarchy, l, ProlongationOperator::shell);
         LevelVerification& result = results.emplace_back();
         result.level = l;
         result.rest_error = largest_distance(level.to_finest, prolongation.apply(level.rest), finest.rest) / diagonal;

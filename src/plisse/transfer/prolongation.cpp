@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cassert>
 
 #include <plisse/base/parallel.h>
@@ -48,13 +49,57 @@ std::array<Vec2, 3> shape_gradients(const Mat2& rest_inverse) {
     return {-g1 - g2, g1, g2};
 }
 
+ProlongationWeights barycentric_weights(const std::vector<Anchor>& anchors, const std::vector<Face>& faces,
+                                        Eigen::Index coarse_count) {
+    ProlongationWeights weights(static_cast<Eigen::Index>(anchors.size()), coarse_count);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t i = 0; i < anchors.size(); ++i)
+        for (int k = 0; k < 3 && anchors[i].face >= 0; ++k)
+            entries.emplace_back(static_cast<int>(i), faces[at(anchors[i].face)][at(k)], anchors[i].weights[k]);
+    weights.setFromTriplets(entries.begin(), entries.end());
+    return weights;
+}
+
+Positions without_weights(const ProlongationWeights& weights, const Positions& fine_rest) {
+    Positions result = Positions::Zero(3, fine_rest.cols());
+    for (int i = 0; i < fine_rest.cols(); ++i)
+        if (weights.outerIndexPtr()[i] == weights.outerIndexPtr()[i + 1])
+            result.col(i) = fine_rest.col(i);
+    return result;
+}
+
+/// Each fine vertex's own, one group each.
+Stencils stencils_of(const ProlongationWeights& weights) {
+    Stencils stencils;
+    for (int i = 0; i < weights.rows(); ++i) {
+        for (ProlongationWeights::InnerIterator entry(weights, i); entry; ++entry)
+            stencils.coarse.push_back(static_cast<int>(entry.col()));
+        const int end = static_cast<int>(stencils.coarse.size());
+        const bool any = end > stencils.starts.back();
+        stencils.group_of.push_back(any ? static_cast<int>(stencils.starts.size()) - 1 : -1);
+        if (any)
+            stencils.starts.push_back(end);
+    }
+    return stencils;
+}
+
 } // namespace
+
+Prolongation::Prolongation(ProlongationWeights weights, const std::vector<Face>& coarse_faces,
+                           std::vector<Anchor> anchors, const Positions& fine_rest)
+    : anchors_(std::move(anchors)), barycentric_(barycentric_weights(anchors_, coarse_faces, weights.cols())),
+      weights_(std::move(weights)), unanchored_(without_weights(weights_, fine_rest)), stencils_(stencils_of(weights_)),
+      arm_starts_(anchors_.size() + 1, 0) {
+    assert(anchors_.size() == static_cast<std::size_t>(weights_.rows()));
+}
 
 Prolongation::Prolongation(const Positions& coarse_rest, std::vector<Face> coarse_faces, std::vector<Anchor> anchors,
                            const Positions& fine_rest, ProlongationOperator kind)
-    : coarse_count_(static_cast<int>(coarse_rest.cols())), coarse_faces_(std::move(coarse_faces)),
-      anchors_(std::move(anchors)), offsets_(Positions::Zero(3, fine_rest.cols())), fine_rest_(fine_rest) {
+    : anchors_(std::move(anchors)), barycentric_(barycentric_weights(anchors_, coarse_faces, coarse_rest.cols())),
+      weights_(barycentric_), unanchored_(without_weights(weights_, fine_rest)),
+      coarse_faces_(std::move(coarse_faces)) {
     assert(anchors_.size() == static_cast<std::size_t>(fine_rest.cols()));
+    assert(kind != ProlongationOperator::affine);
     for (const Face& face : coarse_faces_) {
         const Vec3 origin = coarse_rest.col(face[0]);
         rest_inverse_.push_back(
@@ -62,25 +107,89 @@ Prolongation::Prolongation(const Positions& coarse_rest, std::vector<Face> coars
     }
     const int faces = static_cast<int>(coarse_faces_.size());
     group_by(
-        fine_count(), faces, [&](int i) { return anchors_[at(i)].face; }, fine_of_face_, fine_of_face_starts_);
-    group_by(
-        3 * faces, coarse_count_, [&](int c) { return coarse_faces_[at(c / 3)][at(c % 3)]; }, corners_of_vertex_,
+        3 * faces, coarse_count(), [&](int c) { return coarse_faces_[at(c / 3)][at(c % 3)]; }, corners_of_vertex_,
         corner_starts_);
-    if (kind == ProlongationOperator::intrinsic)
-        return;
-    const std::vector<PolarFrame> rest_frames = frames(coarse_rest);
-    for (int i = 0; i < fine_count(); ++i) {
-        const Anchor& anchor = anchors_[at(i)];
-        if (anchor.face < 0)
-            continue;
-        const Face& face = coarse_faces_[at(anchor.face)];
-        Vec3 difference = fine_rest.col(i);
-        for (int k = 0; k < 3; ++k)
-            difference -= anchor.weights[k] * coarse_rest.col(face[at(k)]);
-        const PolarFrame& frame = rest_frames[at(anchor.face)];
-        offsets_(0, i) = frame.normal.dot(difference);
-        offsets_.col(i).tail<2>() = frame.rotation.transpose() * difference;
+
+    std::vector<std::vector<int>> turning(at(faces));
+    for (int f = 0; f < faces; ++f) {
+        turning[at(f)] = turning_faces(f, kind);
+        add_stencil(f, turning[at(f)]);
     }
+    VecX star_areas = VecX::Zero(coarse_count());
+    for (int f = 0; f < faces; ++f)
+        for (int v : coarse_faces_[at(f)])
+            star_areas[v] += rest_area(f);
+    const std::vector<PolarFrame> rest_frames = frames(coarse_rest);
+    arm_starts_.push_back(0);
+    for (int i = 0; i < fine_count(); ++i) {
+        const int face = anchors_[at(i)].face;
+        stencils_.group_of.push_back(face);
+        if (face >= 0)
+            add_arms(i, fine_rest.col(i), coarse_rest, rest_frames, turning[at(face)], star_areas);
+        arm_starts_.push_back(static_cast<int>(arms_.size()));
+    }
+    group_by(
+        arm_starts_.back(), faces, [&](int a) { return arms_[at(a)].face; }, arms_of_face_, arms_of_face_starts_);
+}
+
+/// The faces with which fine vertices anchored in a face turn, itself first.
+std::vector<int> Prolongation::turning_faces(int face, ProlongationOperator kind) const {
+    if (kind == ProlongationOperator::intrinsic)
+        return {};
+    std::vector<int> result{face};
+    if (kind == ProlongationOperator::shell)
+        return result;
+    for (int v : coarse_faces_[at(face)])
+        for (int c = corner_starts_[at(v)]; c < corner_starts_[at(v) + 1]; ++c)
+            if (const int other = corners_of_vertex_[at(c)] / 3; other != face)
+                result.push_back(other);
+    std::sort(result.begin() + 1, result.end());
+    result.erase(std::unique(result.begin() + 1, result.end()), result.end());
+    return result;
+}
+
+/// Of the face's group: its corners, then what else the turning faces have.
+void Prolongation::add_stencil(int face, const std::vector<int>& turning) {
+    const Face& corners = coarse_faces_[at(face)];
+    std::vector<int> others;
+    for (int f : turning)
+        for (int v : coarse_faces_[at(f)])
+            if (std::find(corners.begin(), corners.end(), v) == corners.end())
+                others.push_back(v);
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    stencils_.coarse.insert(stencils_.coarse.end(), corners.begin(), corners.end());
+    stencils_.coarse.insert(stencils_.coarse.end(), others.begin(), others.end());
+    stencils_.starts.push_back(static_cast<int>(stencils_.coarse.size()));
+}
+
+void Prolongation::add_arms(int fine, const Vec3& rest, const Positions& coarse_rest,
+                            const std::vector<PolarFrame>& rest_frames, const std::vector<int>& turning,
+                            const VecX& star_areas) {
+    const Anchor& anchor = anchors_[at(fine)];
+    const Face& corners = coarse_faces_[at(anchor.face)];
+    const auto stencil = stencils_.group(anchor.face);
+    Mat3 weighted_differences; // of the fine vertex from the corners
+    for (int k = 0; k < 3; ++k)
+        weighted_differences.col(k) = anchor.weights[k] * (rest - coarse_rest.col(corners[at(k)]));
+    const Vec3 offset = weighted_differences.rowwise().sum();
+    const double own_share = turning.size() == 1 ? 1 : 0.5;
+    for (int f : turning) {
+        const Face& face = coarse_faces_[at(f)];
+        Vec3 vector = f == anchor.face ? Vec3(own_share * offset) : Vec3(Vec3::Zero());
+        for (int k = 0; k < 3; ++k)
+            if (const int v = corners[at(k)]; std::find(face.begin(), face.end(), v) != face.end())
+                vector += (1 - own_share) * rest_area(f) / star_areas[v] * weighted_differences.col(k);
+        const PolarFrame& frame = rest_frames[at(f)];
+        Arm arm{fine, f, frame.normal.dot(vector), frame.rotation.transpose() * vector, {}};
+        for (std::size_t k = 0; k < 3; ++k)
+            arm.slots[k] = static_cast<int>(std::find(stencil.begin(), stencil.end(), face[k]) - stencil.begin());
+        arms_.push_back(arm);
+    }
+}
+
+double Prolongation::rest_area(int face) const {
+    return 0.5 / rest_inverse_[at(face)].determinant();
 }
 
 Mat32 Prolongation::deformation_gradient(int face, const Positions& coarse) const {
@@ -98,19 +207,14 @@ std::vector<PolarFrame> Prolongation::frames(const Positions& coarse) const {
 }
 
 Positions Prolongation::apply(const Positions& coarse) const {
-    Positions fine(3, fine_count());
+    Positions fine = unanchored_ + (weights_ * coarse.transpose()).transpose();
     const std::vector<PolarFrame> frame_of = frames(coarse);
     parallel_for(fine_count(), grain, [&](int i) {
-        const Anchor& anchor = anchors_[at(i)];
-        if (anchor.face < 0) {
-            fine.col(i) = fine_rest_.col(i);
-            return;
+        for (int a = arm_starts_[at(i)]; a < arm_starts_[at(i) + 1]; ++a) {
+            const Arm& arm = arms_[at(a)];
+            const PolarFrame& frame = frame_of[at(arm.face)];
+            fine.col(i) += frame.normal * arm.normal + frame.rotation * arm.in_plane;
         }
-        const Face& face = coarse_faces_[at(anchor.face)];
-        const PolarFrame& frame = frame_of[at(anchor.face)];
-        fine.col(i) = anchor.weights[0] * coarse.col(face[0]) + anchor.weights[1] * coarse.col(face[1]) +
-                      anchor.weights[2] * coarse.col(face[2]) + frame.normal * offsets_(0, i) +
-                      frame.rotation * offsets_.col(i).tail<2>();
     });
     return fine;
 }
@@ -118,38 +222,69 @@ Positions Prolongation::apply(const Positions& coarse) const {
 // With g_k the gradient of corner k's barycentric function, moving corner k by d changes F by d g_k^T, and
 //     dn = -R S^-1 g_k (n.d),   dR t = (R J t) (q_k.d) / tr S + n (g_k.S^-1 t) (n.d),
 // where J turns by a right angle and q_k = g_kx R_2 - g_ky R_1 (DESIGN.md section 5).
-std::vector<Prolongation::Block> Prolongation::jacobian(const Positions& coarse) const {
+ProlongationJacobian Prolongation::jacobian(const Positions& coarse) const {
     const std::vector<PolarFrame> frame_of = frames(coarse);
-    std::vector<Block> blocks(anchors_.size(), Block::Zero());
+    ProlongationJacobian result(stencils_);
     parallel_for(fine_count(), grain, [&](int i) {
-        const Anchor& anchor = anchors_[at(i)];
-        if (anchor.face < 0)
-            return;
-        const PolarFrame& frame = frame_of[at(anchor.face)];
-        const double gamma = offsets_(0, i);
-        const Vec2 t = offsets_.col(i).tail<2>();
-        const Vec2 inverse_t = frame.stretch_inverse * t;
-        const Vec3 turned = frame.rotation * Vec2(-t.y(), t.x()) / frame.stretch_trace;
-        const auto gradients = shape_gradients(rest_inverse_[at(anchor.face)]);
-        for (int k = 0; k < 3; ++k) {
-            const Vec2& g = gradients[at(k)];
-            const Vec3 q = g.x() * frame.rotation.col(1) - g.y() * frame.rotation.col(0);
-            const Vec3 tilt = frame.rotation * (frame.stretch_inverse * g);
-            blocks[at(i)].middleCols<3>(3 * k) =
-                anchor.weights[k] * Mat3::Identity() + turned * q.transpose() +
-                (g.dot(inverse_t) * frame.normal - gamma * tilt) * frame.normal.transpose();
+        const auto stencil = stencils_.of(i);
+        auto rows = result.rows(i);
+        for (ProlongationWeights::InnerIterator entry(weights_, i); entry; ++entry) {
+            const auto slot = std::find(stencil.begin(), stencil.end(), static_cast<int>(entry.col()));
+            rows.middleCols<3>(3 * (slot - stencil.begin())) = entry.value() * Mat3::Identity();
+        }
+        for (int a = arm_starts_[at(i)]; a < arm_starts_[at(i) + 1]; ++a) {
+            const Arm& arm = arms_[at(a)];
+            const PolarFrame& frame = frame_of[at(arm.face)];
+            const Vec2& t = arm.in_plane;
+            const Vec2 inverse_t = frame.stretch_inverse * t;
+            const Vec3 turned = frame.rotation * Vec2(-t.y(), t.x()) / frame.stretch_trace;
+            const auto gradients = shape_gradients(rest_inverse_[at(arm.face)]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec2& g = gradients[k];
+                const Vec3 q = g.x() * frame.rotation.col(1) - g.y() * frame.rotation.col(0);
+                const Vec3 tilt = frame.rotation * (frame.stretch_inverse * g);
+                rows.middleCols<3>(3 * arm.slots[k]) +=
+                    turned * q.transpose() +
+                    (g.dot(inverse_t) * frame.normal - arm.normal * tilt) * frame.normal.transpose();
+            }
         }
     });
-    return blocks;
+    return result;
 }
 
-template <typename FaceGradient>
-Positions Prolongation::gather(const FaceGradient& face_gradient) const {
+/// What the gradients at the ends of a face's arms leave at its corners.
+Mat3 Prolongation::turned_gradient(int face, const Positions& coarse, const Positions& fine_gradient) const {
+    const PolarFrame frame = polar_frame(deformation_gradient(face, coarse));
+    Vec3 tilt_sum = Vec3::Zero(); // of an arm's normal part times the gradient at its end, projected below
+    double turn_sum = 0;
+    Vec2 bend_sum = Vec2::Zero();
+    for (int c = arms_of_face_starts_[at(face)]; c < arms_of_face_starts_[at(face) + 1]; ++c) {
+        const Arm& arm = arms_[at(arms_of_face_[at(c)])];
+        const Vec3 g = fine_gradient.col(arm.fine);
+        const Vec2& t = arm.in_plane;
+        tilt_sum += arm.normal * g;
+        turn_sum += (frame.rotation * Vec2(-t.y(), t.x())).dot(g);
+        bend_sum += frame.normal.dot(g) * t;
+    }
+    const Vec2 along_normal = frame.stretch_inverse * (bend_sum - frame.rotation.transpose() * tilt_sum);
+    const auto gradients = shape_gradients(rest_inverse_[at(face)]);
+    Mat3 corners;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2& g = gradients[at(k)];
+        const Vec3 q = g.x() * frame.rotation.col(1) - g.y() * frame.rotation.col(0);
+        corners.col(k) = frame.normal * g.dot(along_normal) + q * (turn_sum / frame.stretch_trace);
+    }
+    return corners;
+}
+
+Positions Prolongation::pull_back(const Positions& coarse, const Positions& fine_gradient) const {
+    Positions result = pull_back_lagged(fine_gradient);
+    if (arms_.empty())
+        return result;
     std::vector<Mat3> corner_gradients(coarse_faces_.size());
     parallel_for(static_cast<int>(coarse_faces_.size()), grain,
-                 [&](int f) { corner_gradients[at(f)] = face_gradient(f); });
-    Positions result = Positions::Zero(3, coarse_count_);
-    parallel_for(coarse_count_, grain, [&](int v) {
+                 [&](int f) { corner_gradients[at(f)] = turned_gradient(f, coarse, fine_gradient); });
+    parallel_for(coarse_count(), grain, [&](int v) {
         for (int c = corner_starts_[at(v)]; c < corner_starts_[at(v) + 1]; ++c) {
             const int corner = corners_of_vertex_[at(c)];
             result.col(v) += corner_gradients[at(corner / 3)].col(corner % 3);
@@ -158,48 +293,12 @@ Positions Prolongation::gather(const FaceGradient& face_gradient) const {
     return result;
 }
 
-Positions Prolongation::pull_back(const Positions& coarse, const Positions& fine_gradient) const {
-    return gather([&](int f) {
-        const PolarFrame frame = polar_frame(deformation_gradient(f, coarse));
-        Mat3 corners = Mat3::Zero();
-        Vec3 tilt_sum = Vec3::Zero(); // sum of gamma g, projected below
-        double turn_sum = 0;
-        Vec2 bend_sum = Vec2::Zero();
-        for (int c = fine_of_face_starts_[at(f)]; c < fine_of_face_starts_[at(f) + 1]; ++c) {
-            const int i = fine_of_face_[at(c)];
-            const Vec3 g = fine_gradient.col(i);
-            const Vec2 t = offsets_.col(i).tail<2>();
-            corners += g * anchors_[at(i)].weights.transpose();
-            tilt_sum += offsets_(0, i) * g;
-            turn_sum += (frame.rotation * Vec2(-t.y(), t.x())).dot(g);
-            bend_sum += frame.normal.dot(g) * t;
-        }
-        const Vec2 along_normal = frame.stretch_inverse * (bend_sum - frame.rotation.transpose() * tilt_sum);
-        const auto gradients = shape_gradients(rest_inverse_[at(f)]);
-        for (int k = 0; k < 3; ++k) {
-            const Vec2& g = gradients[at(k)];
-            const Vec3 q = g.x() * frame.rotation.col(1) - g.y() * frame.rotation.col(0);
-            corners.col(k) += frame.normal * g.dot(along_normal) + q * (turn_sum / frame.stretch_trace);
-        }
-        return corners;
-    });
-}
-
 Positions Prolongation::pull_back_lagged(const Positions& fine_gradient) const {
-    return gather([&](int f) {
-        Mat3 corners = Mat3::Zero();
-        for (int c = fine_of_face_starts_[at(f)]; c < fine_of_face_starts_[at(f) + 1]; ++c) {
-            const int i = fine_of_face_[at(c)];
-            corners += fine_gradient.col(i) * anchors_[at(i)].weights.transpose();
-        }
-        return corners;
-    });
+    return (weights_.transpose() * fine_gradient.transpose()).transpose();
 }
 
 VecX Prolongation::pull_back_values(const VecX& fine_values) const {
-    Positions packed = Positions::Zero(3, fine_count());
-    packed.row(0) = fine_values.transpose();
-    return pull_back_lagged(packed).row(0).transpose();
+    return barycentric_.transpose() * fine_values;
 }
 
 } // namespace plisse
