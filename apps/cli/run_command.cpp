@@ -13,6 +13,7 @@
 #include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/mesh/write_ply.h>
 #include <plisse/scene/build_model.h>
+#include <plisse/scene/hierarchy_cache.h>
 #include <plisse/scene/overrides.h>
 #include <plisse/scene/read_scene.h>
 #include <plisse/scene/run_folder.h>
@@ -32,7 +33,7 @@ struct RunArguments {
     std::optional<int> level;
     std::optional<double> until;
     int threads = 0;
-    bool resume = false, no_frames = false, quiet = false, overwrite = false;
+    bool resume = false, no_frames = false, quiet = false, overwrite = false, no_cache = false;
 };
 
 RunFolderOptions folder_options(const RunArguments& arguments, int threads) {
@@ -45,7 +46,11 @@ RunFolderOptions folder_options(const RunArguments& arguments, int threads) {
 
 /// Runs into the folder. When that throws, the folder says so, or vanishes when nothing could be begun.
 RunResult run_into(RunFolder& folder, const Model& model, const RunArguments& arguments, Context& context) {
-    const RunOptions options{arguments.until.value_or(-1), folder.checkpoint() ? &*folder.checkpoint() : nullptr};
+    std::optional<HierarchyCache> cache;
+    if (const auto caches = HierarchyCache::default_folder(); caches && !arguments.no_cache)
+        cache.emplace(*caches, context);
+    const RunOptions options{arguments.until.value_or(-1), folder.checkpoint() ? &*folder.checkpoint() : nullptr,
+                             cache ? &*cache : nullptr};
     try {
         RunResult result = run(model, options, folder, context);
         if (result.positions.cols() > 0)
@@ -121,6 +126,8 @@ void add_run_command(CLI::App& app) {
     CLI::Option* resume = command->add_flag("--resume", arguments->resume, "goes on with an interrupted run");
     command->add_flag("--overwrite", arguments->overwrite, "replaces the run in an existing folder")->excludes(resume);
     command->add_flag("--no-frames", arguments->no_frames, "saves no frames, only the final state");
+    command->add_flag("--no-cache", arguments->no_cache,
+                      "builds the hierarchy anew, and does not keep it for the next run");
     command->add_flag("--quiet", arguments->quiet, "prints errors only");
     command->add_option("--progress", arguments->progress, "auto, plain or json")
         ->check(CLI::IsMember({"auto", "plain", "json"}));

@@ -74,7 +74,7 @@ RunReport starting_report(const Model& model, const RunOptions& options) {
 Driver::Driver(const Model& model, const RunOptions& options, Recorder& recorder, Context& context)
     : model_(model), recorder_(recorder), context_(context), resume_(options.resume),
       duration_(options.until >= 0 ? std::min(options.until, model.solve.duration) : model.solve.duration),
-      discretization_(model, levels_needed(model), context),
+      discretization_(model, levels_needed(model), context, options.hierarchies),
       log_(discretization_, recorder, context, starting_report(model, options)),
       first_level_(is_direct(model) ? model.solve.level.value_or(discretization_.finest()) : 0),
       last_level_(is_direct(model) ? first_level_ : discretization_.finest()) {

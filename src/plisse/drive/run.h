@@ -1,14 +1,16 @@
 #pragma once
 
 #include <plisse/base/context.h>
+#include <plisse/decimate/hierarchy_store.h>
 #include <plisse/drive/recorder.h>
 #include <plisse/model/model.h>
 
 namespace plisse {
 
 struct RunOptions {
-    double until = -1;                  ///< stop the timeline at this time, s; negative: run to its end
-    const Checkpoint* resume = nullptr; ///< go on from here; the result has the same bytes as an uninterrupted run
+    double until = -1;                     ///< stop the timeline at this time, s; negative: run to its end
+    const Checkpoint* resume = nullptr;    ///< go on from here; the result has the same bytes as an uninterrupted run
+    HierarchyStore* hierarchies = nullptr; ///< where to look for the hierarchy and to keep it; null: nowhere
 };
 
 /// What a run ended with.

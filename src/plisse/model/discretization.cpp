@@ -54,7 +54,7 @@ std::vector<int> label_handles(const Model& model, std::vector<std::vector<int>>
 constexpr int least_decimated_obstacle = 300;
 
 Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::vector<int>& labels, int level_count,
-                          Context& context) {
+                          Context& context, HierarchyStore* store) {
     const std::vector<int> part = model.vertex_parts();
     std::vector<std::uint8_t> frozen(at(model.part_count()), 0);
     DecimationOptions options;
@@ -66,21 +66,23 @@ Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::
         options.obstacle_part[model.bodies.size() + o] = 1;
         frozen[model.bodies.size() + o] = !obstacle.progressive || obstacle.vertices.size() < least_decimated_obstacle;
     }
-    DecimationSummary summary;
-    Hierarchy hierarchy = decimate({rest, model.mesh.faces, part, labels, frozen}, options, &context, &summary);
+    // Without coarser levels there is nothing to keep.
+    auto [hierarchy, summary] = decimate_once({rest, model.mesh.faces, part, labels, frozen}, options, context,
+                                              level_count > 1 ? store : nullptr);
     if (summary.ran_dry)
         context.on_message(
             fmt::format("the coarsest level has {} vertices, not the {} asked for: no further edge can be "
                         "collapsed without harm to the shape",
                         summary.reached_vertices.front(), summary.wanted_vertices.front()));
-    return hierarchy;
+    return std::move(hierarchy);
 }
 
 } // namespace
 
-Discretization::Discretization(const Model& model, int level_count, Context& context) : model_(model) {
+Discretization::Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store)
+    : model_(model) {
     const std::vector<int> labels = label_handles(model_, handles_of_label_);
-    hierarchy_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context);
+    hierarchy_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context, store);
     layouts_.resize(hierarchy_.levels.size());
     for (int level = 0; level <= finest(); ++level)
         lay_out(level);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <plisse/base/context.h>
-#include <plisse/decimate/decimate.h>
+#include <plisse/decimate/hierarchy_store.h>
 #include <plisse/model/model.h>
 
 namespace plisse {
@@ -22,8 +22,9 @@ struct LevelLayout {
 /// A model on its hierarchy: levels, scripts and start states. Level 0 is the coarsest.
 class Discretization {
 public:
-    /// Decimates; says so through the context when a level cannot be as coarse as asked. level_count >= 1.
-    Discretization(const Model& model, int level_count, Context& context);
+    /// Decimates, unless the store has the result; says so through the context when a level cannot be as coarse as
+    /// asked. level_count >= 1.
+    Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store = nullptr);
 
     const Model& model() const { return model_; }
     const Hierarchy& hierarchy() const { return hierarchy_; }
