@@ -72,7 +72,7 @@ public:
 
     HierarchyLevel finest() const {
         HierarchyLevel level = make_level(all_vertices(input_));
-        level.to_finest = anchors(finest_points_, input_.part.size(), level);
+        level.to_finest = level.on_finest = anchors(finest_points_, input_.part.size(), level);
         return level;
     }
 
@@ -88,6 +88,28 @@ public:
         count(level_points_);
         level_points_ = PointCarrier(level.vertex_ids, faces_.vertex_id_count(), faces_.face_id_count());
         return level;
+    }
+
+    /// Undoes all collapses and finds where the vertices of the levels come to lie. cuts: collapses before each level.
+    void locate_on_finest(std::vector<HierarchyLevel>& levels, const std::vector<int>& cuts) {
+        std::vector<PointCarrier> points; // of the levels met so far, from the coarsest
+        const auto meet_levels = [&](int collapses) {
+            while (points.size() + 1 < levels.size() && cuts[points.size()] == collapses)
+                points.emplace_back(levels[points.size()].vertex_ids, faces_.vertex_id_count(), faces_.face_id_count());
+        };
+        for (int c = cuts.front(); c > 0; --c) {
+            meet_levels(c);
+            const Collapse& collapse = sequence_.collapses[c - 1];
+            faces_.expand(collapse);
+            triangles_.lay_out(collapse, sequence_.charts[c - 1], faces_, on_boundary_);
+            for (PointCarrier& carrier : points)
+                carrier.carry_back(collapse, sequence_.charts[c - 1], triangles_);
+        }
+        meet_levels(0);
+        for (std::size_t l = 0; l < points.size(); ++l) {
+            levels[l].on_finest = anchors(points[l], levels[l].vertex_ids.size(), levels.back());
+            count(points[l]);
+        }
     }
 
     void finish() const { count(finest_points_); }
@@ -159,6 +181,7 @@ std::vector<HierarchyLevel> build_levels(const DecimationInput& input, const Col
     result.back() = builder.finest();
     for (int l = levels - 2; l >= 0; --l)
         result[l] = builder.next(cuts[l + 1], cuts[l], result[l + 1]);
+    builder.locate_on_finest(result, cuts);
     builder.finish();
     for (int cut : cuts)
         summary.reached_vertices.push_back(sequence.counted_left[cut]);

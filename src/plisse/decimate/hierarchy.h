@@ -30,6 +30,7 @@ struct HierarchyLevel {
     std::vector<int> label; ///< per vertex, as in the input: -1 free, else pinned
 
     std::vector<Anchor> to_finest; ///< one per vertex of the finest level, on this level's faces
+    std::vector<Anchor> on_finest; ///< the other way: one per vertex of this level, on the finest level's faces
     std::vector<Anchor> to_next;   ///< one per vertex of the next finer level; empty on the finest
 
     /// Collapses to undo on the way to the next finer level, in batches: the records of a batch are legal and their

@@ -1,5 +1,6 @@
 #include <plisse/decimate/hierarchy_bytes.h>
 
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -31,12 +32,8 @@ public:
     std::uint64_t value() const { return state_; }
 
 private:
-    void add_word(std::uint64_t word) { // the finalizer of splitmix64
-        state_ = (state_ ^ word) + 0x9e3779b97f4a7c15u;
-        state_ = (state_ ^ (state_ >> 30)) * 0xbf58476d1ce4e5b9u;
-        state_ = (state_ ^ (state_ >> 27)) * 0x94d049bb133111ebu;
-        state_ ^= state_ >> 31;
-    }
+    /// Every step can be undone, so two states that differ once never meet again over equal words.
+    void add_word(std::uint64_t word) { state_ = std::rotr((state_ ^ word) * 0x9e3779b97f4a7c15u, 29); }
     std::uint64_t state_;
 };
 
@@ -166,6 +163,7 @@ void visit(Visitor& v, HierarchyLevel& level) {
     for (std::vector<int>* list : {&level.vertex_ids, &level.face_ids, &level.part, &level.label})
         v(*list);
     v(level.to_finest);
+    v(level.on_finest);
     v(level.to_next);
     v(level.batches);
 }

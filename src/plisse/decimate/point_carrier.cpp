@@ -120,6 +120,7 @@ private:
 void ChartTriangles::lay_out(const Collapse& collapse, const Chart& chart, const DynamicFaces& faces,
                              const std::vector<bool>& on_boundary) {
     ends_on_boundary = {on_boundary[collapse.i], on_boundary[collapse.j]};
+    merged_on_boundary = on_boundary[collapse.k];
     Layout old_side(collapse, chart, faces, on_boundary), new_side(collapse, chart, faces, on_boundary);
     for (std::size_t d = 0; d < collapse.dead_faces.size(); ++d)
         old_side.add(collapse.dead_faces[d], collapse.dead_corners[d]);
@@ -146,23 +147,37 @@ PointCarrier::PointCarrier(std::span<const int> vertices, int vertex_id_count, i
 
 void PointCarrier::carry(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles) {
     moving_.clear();
-    move_vertex_point(collapse.i, collapse.k, chart.alias == Alias::i, Vec2(0, 0), triangles.ends_on_boundary[0]);
-    move_vertex_point(collapse.j, collapse.k, chart.alias == Alias::j, Vec2(1, 0), triangles.ends_on_boundary[1]);
-    for (const auto& triangle : triangles.before)
+    const auto [i_on_boundary, j_on_boundary] = triangles.ends_on_boundary;
+    move_vertex_point(collapse.i, chart.alias == Alias::i ? collapse.k : -1, Vec2(0, 0), i_on_boundary);
+    move_vertex_point(collapse.j, chart.alias == Alias::j ? collapse.k : -1, Vec2(1, 0), j_on_boundary);
+    relocate(triangles.before, triangles.after);
+}
+
+void PointCarrier::carry_back(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles) {
+    moving_.clear();
+    const int heir = chart.alias == Alias::i ? collapse.i : chart.alias == Alias::j ? collapse.j : -1;
+    move_vertex_point(collapse.k, heir, chart.k, triangles.merged_on_boundary);
+    relocate(triangles.after, triangles.before);
+}
+
+void PointCarrier::relocate(const std::vector<ChartTriangles::Triangle>& from,
+                            const std::vector<ChartTriangles::Triangle>& to) {
+    for (const auto& triangle : from)
         lift(triangle);
     for (const Moving& moving : moving_)
-        settle(moving, triangles);
+        settle(moving, to);
     relocations_ += static_cast<long>(moving_.size());
 }
 
-void PointCarrier::move_vertex_point(int vertex, int k, bool aliased, const Vec2& place, bool on_boundary) {
+/// heir: the vertex that lies where this one was; -1: none does, and the point becomes one of a face.
+void PointCarrier::move_vertex_point(int vertex, int heir, const Vec2& place, bool on_boundary) {
     const int point = point_at_vertex_[vertex];
     if (point < 0)
         return;
     point_at_vertex_[vertex] = -1;
-    if (aliased) {
-        point_at_vertex_[k] = point;
-        vertices_[point] = k;
+    if (heir >= 0) {
+        point_at_vertex_[heir] = point;
+        vertices_[point] = heir;
     } else {
         vertices_[point] = -1;
         moving_.push_back({point, place, on_boundary});
@@ -183,9 +198,8 @@ void PointCarrier::lift(const ChartTriangles::Triangle& triangle) {
     first = -1;
 }
 
-void PointCarrier::settle(const Moving& moving, const ChartTriangles& triangles) {
-    Fit fit = moving.on_boundary ? locate_on_boundary(triangles.after, moving.place)
-                                 : locate_inside(triangles.after, moving.place);
+void PointCarrier::settle(const Moving& moving, const std::vector<ChartTriangles::Triangle>& triangles) {
+    Fit fit = moving.on_boundary ? locate_on_boundary(triangles, moving.place) : locate_inside(triangles, moving.place);
     worst_ = std::min(worst_, fit.score);
     errors_ += fit.score < worst_round_off;
     for (double& weight : fit.weights)

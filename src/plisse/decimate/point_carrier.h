@@ -18,6 +18,7 @@ struct ChartTriangles {
     };
     std::vector<Triangle> before, after;
     std::array<bool, 2> ends_on_boundary{}; ///< whether i and j are
+    bool merged_on_boundary = false;        ///< whether k is
 
     /// Fills both from a collapse that `faces` have not made yet. on_boundary: by vertex id. Keeps its memory.
     void lay_out(const Collapse& collapse, const Chart& chart, const DynamicFaces& faces,
@@ -25,7 +26,8 @@ struct ChartTriangles {
 };
 
 /// Follows points of a surface through collapses: each is a vertex until that is collapsed away, then a point of a face
-/// (the charts of Liu et al. 2021 make the map one to one). Points of the boundary stay on it.
+/// (the charts of Liu et al. 2021 make the map one to one). Collapses that are undone take points the other way. Points
+/// of the boundary stay on it.
 class PointCarrier {
 public:
     /// One point at each of these vertices.
@@ -33,6 +35,8 @@ public:
 
     /// Moves the points of the collapsing patch.
     void carry(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles);
+    /// The same where the collapse is undone.
+    void carry_back(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles);
 
     /// Where a point is, by face id. A point at a vertex takes the lowest face around it.
     Anchor anchor(int point, const DynamicFaces& faces) const;
@@ -49,9 +53,10 @@ private:
         bool on_boundary;
     };
 
-    void move_vertex_point(int vertex, int k, bool aliased, const Vec2& place, bool on_boundary);
+    void move_vertex_point(int vertex, int heir, const Vec2& place, bool on_boundary);
+    void relocate(const std::vector<ChartTriangles::Triangle>& from, const std::vector<ChartTriangles::Triangle>& to);
     void lift(const ChartTriangles::Triangle& triangle);
-    void settle(const Moving& moving, const ChartTriangles& triangles);
+    void settle(const Moving& moving, const std::vector<ChartTriangles::Triangle>& triangles);
 
     std::vector<int> point_at_vertex_; ///< by vertex id, -1: none
     std::vector<int> first_in_face_;   ///< by face id, -1: none

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <plisse/decimate/level_attributes.h>
 #include <plisse/mesh/write_ply.h>
 #include <plisse/scene/whole_file.h>
 
@@ -109,8 +110,8 @@ void RunFolder::on_hierarchy(const Hierarchy& hierarchy) {
             surface.face_body.push_back(level.part[static_cast<std::size_t>(face[0])]);
         fs::create_directories(folder_ / fmt::format("frames/{}", levels_.size() - 1));
     }
-    if (!levels_.empty())
-        levels_.back().mesh.attributes = attributes_;
+    for (std::size_t level = 0; level < levels_.size(); ++level)
+        levels_[level].mesh.attributes = attributes_on(hierarchy, static_cast<int>(level), attributes_);
     fs::create_directories(folder_ / "levels");
     for (std::size_t level = 0; level < levels_.size(); ++level)
         write_ply(folder_ / fmt::format("levels/{}.ply", level), levels_[level].mesh, levels_[level].face_body);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include <plisse/decimate/hierarchy.h>
+#include <plisse/mesh/triangle_mesh.h>
+
+namespace plisse {
+
+/// Attributes of the finest mesh on a coarser level. A vertex takes the values at its place on the finest mesh (numbers
+/// that are counts or codes: those of the nearest corner there), a face those of the finest face with its id, and a
+/// face's corner those at its vertex's place, seen from the side of a seam that the finest face with the face's id is
+/// on.
+std::vector<MeshAttribute> attributes_on(const Hierarchy& hierarchy, int level,
+                                         const std::vector<MeshAttribute>& finest);
+
+} // namespace plisse
