@@ -129,8 +129,9 @@ void build_hierarchy(const HierarchyArguments& arguments) {
     DecimationOptions options;
     options.levels = arguments.levels;
     options.coarsest_vertices = arguments.coarsest;
-    DecimationSummary summary;
-    const Hierarchy hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, options, nullptr, &summary);
+    DecimationResult decimation;
+    decimation.hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, options, nullptr, &decimation.summary);
+    const auto& [hierarchy, summary] = decimation;
     const std::vector<LevelStatistics> statistics = hierarchy_statistics(hierarchy);
 
     Json json = hierarchy_json(arguments.mesh, statistics, summary);
@@ -143,7 +144,7 @@ void build_hierarchy(const HierarchyArguments& arguments) {
         holds = print_verification(verifications, summary);
     }
     std::filesystem::create_directories(arguments.folder);
-    write_hierarchy(arguments.folder, hierarchy, mesh.attributes);
+    write_hierarchy(arguments.folder, decimation, mesh.attributes);
     write_file_atomically(std::filesystem::path(arguments.folder) / "hierarchy.json", json.dump(2) + "\n");
     if (!holds)
         throw ExitStatus{ExitCode::failed};

@@ -1,14 +1,16 @@
 #include "prolong_command.h"
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include <fmt/core.h>
 
 #include <plisse/base/error.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/mesh/read_mesh.h>
 #include <plisse/mesh/write_ply.h>
 #include <plisse/scene/hierarchy_folder.h>
-#include <plisse/transfer/prolongation.h>
 
 namespace plisse {
 
@@ -19,13 +21,10 @@ struct ProlongArguments {
     int from = 0;
 };
 
-ProlongationOperator operator_named(const std::string& name) {
-    if (name == "affine")
-        throw InputError("--operator affine", "not supported in this version", "give shell, intrinsic or blend");
-    if (name == "blend")
-        return ProlongationOperator::blend;
-    return name == "shell" ? ProlongationOperator::shell : ProlongationOperator::intrinsic;
-}
+const std::map<std::string, ProlongationOperator> operators{{"shell", ProlongationOperator::shell},
+                                                            {"intrinsic", ProlongationOperator::intrinsic},
+                                                            {"blend", ProlongationOperator::blend},
+                                                            {"affine", ProlongationOperator::affine}};
 
 void expect_level_mesh(const TriangleMesh& given, const TriangleMesh& level, const ProlongArguments& arguments) {
     if (given.vertex_count() != level.vertex_count() || given.faces != level.faces)
@@ -36,23 +35,31 @@ void expect_level_mesh(const TriangleMesh& given, const TriangleMesh& level, con
                          fmt::format("give level-{}.ply of {} with other positions", arguments.from, arguments.folder));
 }
 
+/// From a level below the finest of the folder's hierarchy to that.
+Prolongation prolongation_of(const ProlongArguments& arguments, const HierarchyFiles& files) {
+    const ProlongationOperator kind = operators.at(arguments.kind);
+    const auto from = static_cast<std::size_t>(arguments.from);
+    const TriangleMesh& fine = files.levels.back();
+    if (kind != ProlongationOperator::affine)
+        return {files.levels[from].positions, files.levels[from].faces, files.to_finest[from], fine.positions, kind};
+    const Hierarchy hierarchy = read_collapses(arguments.folder);
+    if (hierarchy.level_count() != static_cast<int>(files.levels.size()) || hierarchy.finest().faces != fine.faces)
+        throw InputError(arguments.folder, "hierarchy.bin is not of the meshes beside it",
+                         "write the folder again with `plisse hierarchy`");
+    return prolongation_to_finest(hierarchy, arguments.from, kind);
+}
+
 void prolong(const ProlongArguments& arguments) {
-    const ProlongationOperator kind = operator_named(arguments.kind);
     HierarchyFiles files = read_hierarchy(arguments.folder);
     const int finest = static_cast<int>(files.levels.size()) - 1;
     if (arguments.from > finest)
         throw InputError(fmt::format("--from {}", arguments.from), fmt::format("there are {} levels", finest + 1),
                          fmt::format("give a level from 0 to {}", finest));
-    const auto from = static_cast<std::size_t>(arguments.from);
     const TriangleMesh given = read_mesh(arguments.positions).mesh;
-    expect_level_mesh(given, files.levels[from], arguments);
+    expect_level_mesh(given, files.levels[static_cast<std::size_t>(arguments.from)], arguments);
     TriangleMesh& fine = files.levels.back();
-    if (arguments.from < finest)
-        fine.positions = Prolongation(files.levels[from].positions, files.levels[from].faces, files.to_finest[from],
-                                      fine.positions, kind)
-                             .apply(given.positions);
-    else
-        fine.positions = given.positions;
+    fine.positions =
+        arguments.from < finest ? prolongation_of(arguments, files).apply(given.positions) : given.positions;
     write_ply(arguments.output, fine);
 }
 
@@ -67,8 +74,8 @@ void add_prolong_command(CLI::App& app) {
         ->check(CLI::NonNegativeNumber);
     command->add_option("--positions", arguments->positions, "deformed mesh of that level")->required();
     command->add_option("-o,--output", arguments->output, "PLY file for the finest mesh")->required();
-    command->add_option("--operator", arguments->kind, "shell, intrinsic or affine")
-        ->check(CLI::IsMember({"shell", "intrinsic", "affine"}));
+    command->add_option("--operator", arguments->kind, "shell, intrinsic, blend or affine")
+        ->check(CLI::IsMember(operators));
     command->callback([arguments] { prolong(*arguments); });
 }
 

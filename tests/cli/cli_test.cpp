@@ -184,6 +184,35 @@ TEST_F(Resume, AnInterruptedOrKilledRunEndsInTheSameBytes) {
     expect_same_end("killed");
 }
 
+/// Points the programs it starts to a cache of their own.
+class CliWithCache : public Cli {
+protected:
+    void SetUp() override { setenv("PLISSE_CACHE", at("cache").c_str(), 1); }
+    void TearDown() override { unsetenv("PLISSE_CACHE"); }
+};
+
+TEST_F(CliWithCache, RunsEndTheSameWithAHierarchyThatWasKept) {
+    write("scene.json", hung_sheet(R"("duration": 0.3, "settle": false)"));
+    const auto run_into = [&](const std::string& folder, const std::string& option = "--no-frames") {
+        const Outcome outcome = run({"run", at("scene.json"), "-o", at(folder), "--progress", "plain", option});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome;
+    };
+    run_into("uncached", "--no-cache");
+    EXPECT_FALSE(fs::exists(at("cache")));
+    run_into("first");
+    ASSERT_TRUE(fs::exists(at("cache")));
+    const fs::path kept = fs::directory_iterator(at("cache"))->path();
+    const auto written = fs::last_write_time(kept);
+    EXPECT_EQ(run_into("second").err.find("hierarchy"), std::string::npos);
+    write_text(kept, "damaged");
+    const Outcome third = run_into("third");
+    EXPECT_NE((third.err + third.out).find("the hierarchy is built again"), std::string::npos) << third.err;
+    EXPECT_GT(fs::last_write_time(kept), written);
+    for (const char* folder : {"first", "second", "third"})
+        EXPECT_EQ(read_text(folder_.path() / folder / "final.ply"), read_text(folder_.path() / "uncached/final.ply"));
+}
+
 TEST_F(Cli, HierarchyAndProlongGiveTheRestShapeBack) {
     const Outcome made = run({"hierarchy", std::string(PLISSE_SOURCE_DIR) + "/tests/data/malformed/good/square.obj",
                               "-o", at("h"), "--levels", "1", "--verify"});
@@ -209,9 +238,18 @@ TEST_F(Cli, HierarchyAndProlongGiveTheRestShapeBack) {
     expect_unusable(
         {"prolong", at("levels"), "--from", "1", "--positions", at("levels/level-0.ply"), "-o", at("x.ply")},
         "level-0.ply");
-    expect_unusable({"prolong", at("levels"), "--from", "0", "--positions", at("levels/level-0.ply"), "-o", at("x.ply"),
-                     "--operator", "affine"},
-                    "not supported in this version");
+    const auto prolong_by = [&](const std::string& kind) {
+        return std::vector<std::string>{
+            "prolong", at("levels"),      "--from",     "0", "--positions", at("levels/level-0.ply"),
+            "-o",      at(kind + ".ply"), "--operator", kind};
+    };
+    for (const std::string kind : {"shell", "intrinsic", "blend", "affine"}) {
+        EXPECT_EQ(run(prolong_by(kind)).code, 0) << kind;
+        EXPECT_EQ(run({"check", at(kind + ".ply")}).code, 0) << kind;
+    }
+    expect_unusable(prolong_by("loop"), "--operator");
+    write("levels/hierarchy.bin", "damaged");
+    expect_unusable(prolong_by("affine"), "hierarchy.bin");
 }
 
 } // namespace

@@ -11,7 +11,7 @@
 namespace plisse {
 namespace {
 
-Hierarchy sphere_hierarchy() {
+DecimationResult decimated_sphere() {
     GeneratorOptions options;
     options.shape = GeneratorShape::sphere;
     options.edge_length = 0.12;
@@ -20,13 +20,16 @@ Hierarchy sphere_hierarchy() {
     DecimationOptions decimation;
     decimation.levels = 3;
     decimation.coarsest_vertices = 60;
-    return decimate({mesh.positions, mesh.faces, part, {}, {}}, decimation);
+    DecimationResult result;
+    result.hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, decimation, nullptr, &result.summary);
+    return result;
 }
 
 TEST(HierarchyFolder, ReadsBackWhatWasWritten) {
-    const Hierarchy hierarchy = sphere_hierarchy();
+    const DecimationResult decimation = decimated_sphere();
+    const Hierarchy& hierarchy = decimation.hierarchy;
     const TemporaryFolder folder;
-    write_hierarchy(folder.path(), hierarchy, {});
+    write_hierarchy(folder.path(), decimation, {});
     const HierarchyFiles files = read_hierarchy(folder.path());
     ASSERT_EQ(files.levels.size(), hierarchy.levels.size());
     for (std::size_t l = 0; l < files.levels.size(); ++l) {
@@ -38,12 +41,29 @@ TEST(HierarchyFolder, ReadsBackWhatWasWritten) {
             EXPECT_EQ(files.to_finest[l][v].face, hierarchy.levels[l].to_finest[v].face);
             EXPECT_EQ(files.to_finest[l][v].weights, hierarchy.levels[l].to_finest[v].weights);
         }
+    EXPECT_EQ(read_collapses(folder.path()).collapses.size(), hierarchy.collapses.size());
+}
+
+TEST(HierarchyFolder, KeepsAttributesOnEveryLevel) {
+    const DecimationResult decimation = decimated_sphere();
+    MeshAttribute height{"height", MeshAttribute::Domain::vertex, 1, {}};
+    for (const auto& point : decimation.hierarchy.finest().rest.colwise())
+        height.values.push_back(point.y());
+    const TemporaryFolder folder;
+    write_hierarchy(folder.path(), decimation, {height});
+    for (const TriangleMesh& level : read_hierarchy(folder.path()).levels) {
+        ASSERT_EQ(level.attributes.size(), 1u);
+        EXPECT_EQ(level.attributes[0].name, "height");
+        for (int v = 0; v < level.vertex_count(); ++v)
+            EXPECT_NEAR(level.attributes[0].values[static_cast<std::size_t>(v)], level.positions(1, v), 0.25);
+    }
 }
 
 TEST(HierarchyFolder, RefusesAMapOfOtherMeshes) {
     const TemporaryFolder folder;
     EXPECT_THROW(read_hierarchy(folder.path()), InputError);
-    write_hierarchy(folder.path(), sphere_hierarchy(), {});
+    EXPECT_THROW(read_collapses(folder.path()), InputError);
+    write_hierarchy(folder.path(), decimated_sphere(), {});
     std::filesystem::copy_file(folder.path() / "level-0.ply", folder.path() / "level-2.ply",
                                std::filesystem::copy_options::overwrite_existing);
     EXPECT_THROW(read_hierarchy(folder.path()), InputError);
@@ -52,7 +72,7 @@ TEST(HierarchyFolder, RefusesAMapOfOtherMeshes) {
 }
 
 TEST(VerifyHierarchy, HoldsForADecimationAndFailsForABrokenMap) {
-    Hierarchy hierarchy = sphere_hierarchy();
+    Hierarchy hierarchy = decimated_sphere().hierarchy;
     const auto good = verify_hierarchy(hierarchy);
     ASSERT_EQ(good.size(), 2u);
     for (const LevelVerification& level : good) {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <plisse/decimate/level_attributes.h>
 #include <plisse/mesh/read_mesh.h>
 #include <plisse/mesh/write_ply.h>
 #include <plisse/scene/json_document.h>
@@ -50,19 +51,22 @@ bool fits(const std::vector<Anchor>& anchors, const TriangleMesh& coarse, const 
 
 } // namespace
 
-void write_hierarchy(const std::filesystem::path& folder, const Hierarchy& hierarchy,
+void write_hierarchy(const std::filesystem::path& folder, const DecimationResult& decimation,
                      const std::vector<MeshAttribute>& attributes) {
+    const Hierarchy& hierarchy = decimation.hierarchy;
     Json map = {
         {"format", 1}, {"levels", hierarchy.level_count()}, {"to_finest", Json::array()}, {"to_next", Json::array()}};
     for (std::size_t l = 0; l < hierarchy.levels.size(); ++l) {
         const HierarchyLevel& level = hierarchy.levels[l];
         const bool finest = l + 1 == hierarchy.levels.size();
-        write_ply(level_file(folder, l), {level.rest, level.faces, finest ? attributes : std::vector<MeshAttribute>{}});
+        write_ply(level_file(folder, l),
+                  {level.rest, level.faces, attributes_on(hierarchy, static_cast<int>(l), attributes)});
         if (finest)
             continue;
         map["to_finest"].push_back(map_json(level.to_finest));
         map["to_next"].push_back(map_json(level.to_next));
     }
+    write_file_atomically(folder / "hierarchy.bin", to_bytes(decimation));
     write_file_atomically(folder / "map.json", map.dump() + "\n");
 }
 
@@ -90,6 +94,15 @@ HierarchyFiles read_hierarchy(const std::filesystem::path& folder) {
         throw broken;
     }
     return files;
+}
+
+Hierarchy read_collapses(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "hierarchy.bin";
+    auto decimation = from_bytes(read_bytes(file));
+    if (!decimation)
+        throw InputError(file.string(), "the file is damaged, or another version of plisse wrote it",
+                         "write the folder again with `plisse hierarchy`");
+    return std::move(decimation->hierarchy);
 }
 
 } // namespace plisse
