@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include <plisse/decimate/decimate.h>
 
 #include <decimate/test_meshes.h>
@@ -94,6 +97,37 @@ TEST_F(LevelAttributes, of_corners_stay_on_their_side_of_a_seam) {
     }
     EXPECT_GT(beyond_seam, 0); // what tests the extension
     EXPECT_LT(worst, 0.4);     // of a sphere of radius 1, where flat faces are extended
+}
+
+/// A map all around, whose two edges meet in a seam that divides nothing into parts.
+TEST_F(LevelAttributes, of_corners_do_not_span_the_seam_of_a_map_around) {
+    const auto turn_of = [](const Vec3& point) { return std::atan2(point.z(), point.x()) / (2 * std::numbers::pi); };
+    const auto wrapped = [](double difference) { return difference - std::round(difference); };
+    MeshAttribute uv{"uv", Domain::corner, 1, {}};
+    for (const Face& face : mesh.faces) {
+        const double centre = turn_of(mesh.points[face[0]] + mesh.points[face[1]] + mesh.points[face[2]]);
+        for (int v : face)
+            uv.values.push_back(centre + wrapped(turn_of(mesh.points[v]) - centre));
+    }
+    for (int l = 0; l + 1 < hierarchy.level_count(); ++l) {
+        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(l)];
+        const std::vector<double> values = attributes_on(hierarchy, l, {uv})[0].values;
+        for (std::size_t f = 0; f < level.faces.size(); ++f) {
+            double least = 1, most = -1, highest = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 point = level.rest.col(level.faces[f][k]);
+                highest = std::max(highest, std::abs(point.y()));
+                least = std::min(least, values[3 * f + k]);
+                most = std::max(most, values[3 * f + k]);
+                if (std::abs(point.y()) < 0.8) {
+                    EXPECT_LT(std::abs(wrapped(values[3 * f + k] - turn_of(point))), 0.1) << "face " << f;
+                }
+            }
+            if (highest < 0.8) { // at the poles the map is torn
+                EXPECT_LT(most - least, 0.4) << "face " << f;
+            }
+        }
+    }
 }
 
 TEST_F(LevelAttributes, of_the_finest_level_are_untouched) {

@@ -1,9 +1,6 @@
 #include <plisse/decimate/level_attributes.h>
 
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <utility>
 
 #include <Eigen/QR>
 
@@ -80,40 +77,6 @@ void append(std::vector<double>& values, const VecX& more) {
     values.insert(values.end(), more.begin(), more.end());
 }
 
-/// The finest faces in parts that seams divide: an edge is on a seam when its faces have unlike values at one of its
-/// ends. One number a face.
-std::vector<int> islands(const Sampler& sampler, const HierarchyLevel& finest) {
-    std::vector<int> parent(finest.faces.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int f) {
-        while (parent[at(f)] != f)
-            f = parent[at(f)] = parent[at(parent[at(f)])];
-        return f;
-    };
-    struct Side {
-        int face;
-        VecX values[2]; ///< at the edge's lower and upper vertex
-    };
-    std::map<std::pair<int, int>, std::vector<Side>> sides_of;
-    for (std::size_t f = 0; f < finest.faces.size(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::size_t low = k, high = (k + 1) % 3;
-            if (finest.faces[f][low] > finest.faces[f][high])
-                std::swap(low, high);
-            const int corner = 3 * static_cast<int>(f);
-            auto& sides = sides_of[{finest.faces[f][low], finest.faces[f][high]}];
-            sides.push_back(
-                {static_cast<int>(f),
-                 {sampler.values(corner + static_cast<int>(low)), sampler.values(corner + static_cast<int>(high))}});
-            for (const Side& other : sides)
-                if (other.values[0] == sides.back().values[0] && other.values[1] == sides.back().values[1])
-                    parent[at(root(other.face))] = root(static_cast<int>(f));
-        }
-    for (std::size_t f = 0; f < parent.size(); ++f)
-        parent[f] = root(static_cast<int>(f));
-    return parent;
-}
-
 /// Weights of a face's corners, of any sign, for the point of its plane nearest to x.
 Vec3 extended_weights(const Face& face, const Positions& rest, const Vec3& x) {
     Mat32 edges;
@@ -122,22 +85,29 @@ Vec3 extended_weights(const Face& face, const Positions& rest, const Vec3& x) {
     return {1 - along.sum(), along[0], along[1]};
 }
 
-/// A corner takes the values at its vertex's place where that is on the island of the face's own finest face, and
-/// otherwise what that face's values extend to: no face spans a seam.
+/// A corner takes the values at its vertex's place, of all sides that meet there those nearest to what the values on
+/// the face's own finest face extend to. Where none is near, all of them are across a seam, and it takes the extended
+/// ones.
 void append_corners(const Sampler& sampler, const HierarchyLevel& level, const HierarchyLevel& finest,
                     std::vector<double>& values) {
     const auto around = faces_around(finest);
-    const std::vector<int> island = islands(sampler, finest);
+    const auto value_at = [&](const Anchor& place) { return sampler.at_place(place, Sampler::corners(place.face)); };
     for (std::size_t f = 0; f < level.faces.size(); ++f) {
         const int own = level.face_ids[f];
+        const VecX centre = value_at({own, Vec3::Constant(1.0 / 3)});
         for (int v : level.faces[f]) {
-            const auto places = same_places(level.on_finest[at(v)], finest.faces, around);
-            const auto place = std::find_if(places.begin(), places.end(), [&](const Anchor& anchor) {
-                return island[at(anchor.face)] == island[at(own)];
-            });
-            const Anchor extended{own, extended_weights(finest.faces[at(own)], finest.rest, level.rest.col(v))};
-            const Anchor& seen = place == places.end() ? extended : *place;
-            append(values, sampler.at_place(seen, Sampler::corners(seen.face)));
+            const VecX extended =
+                value_at({own, extended_weights(finest.faces[at(own)], finest.rest, level.rest.col(v))});
+            VecX chosen = extended;
+            double nearest = (extended - centre).norm(); // farther is across a seam
+            for (const Anchor& place : same_places(level.on_finest[at(v)], finest.faces, around)) {
+                const VecX candidate = value_at(place);
+                if (const double distance = (candidate - extended).norm(); distance <= nearest) {
+                    nearest = distance;
+                    chosen = candidate;
+                }
+            }
+            append(values, chosen);
         }
     }
 }
