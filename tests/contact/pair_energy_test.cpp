@@ -82,6 +82,21 @@ TEST(Barrier, ValueAndDerivatives) {
     }
 }
 
+/// VALIDATION.md, C1 (i): the slope of the barrier of squared distances by x, the gap over the contact distance, and
+/// the gaps at which it bears a load.
+TEST(Barrier, BearsTheLoadsOfTheTableAtItsGaps) {
+    const auto slope = [](double x) { return 2 * x * std::abs(barrier(x * x).first); };
+    EXPECT_NEAR(slope(0.1), 21.4256, 1e-4);
+    EXPECT_NEAR(slope(0.5), 4.32944, 1e-5);
+    EXPECT_NEAR(slope(0.9), 0.224355, 1e-6);
+    const std::pair<double, double> gaps[] = {{1e-3, 0.993531}, {1e-2, 0.979447}, {0.1, 0.934003},
+                                              {1, 0.780041},    {10, 0.239541},   {100, 0.020110}};
+    for (const auto& [load, x] : gaps) {
+        EXPECT_GT(slope(x - 1e-6), load);
+        EXPECT_LT(slope(x + 1e-6), load);
+    }
+}
+
 TEST(PairEnergy, DerivativesAgreeWithDifferences) {
     std::map<std::array<int, 3>, int> seen;
     for (const Case& c : random_cases(1500)) {
