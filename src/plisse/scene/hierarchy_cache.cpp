@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <plisse/scene/json_document.h>
 #include <plisse/scene/whole_file.h>
 
 namespace plisse {
@@ -23,14 +23,6 @@ std::string header() {
     return "plisse hierarchy 1, sources " PLISSE_HIERARCHY_SOURCES "\n";
 }
 
-std::string content_of(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary | std::ios::ate);
-    std::string content(in ? static_cast<std::size_t>(in.tellg()) : 0, '\0');
-    in.seekg(0);
-    in.read(content.data(), static_cast<std::streamsize>(content.size()));
-    return in ? content : "";
-}
-
 const char* variable(const char* name) {
     const char* value = std::getenv(name);
     return value && *value ? value : nullptr;
@@ -43,11 +35,17 @@ std::optional<DecimationResult> HierarchyCache::load(const std::string& fingerpr
     std::error_code error;
     if (!fs::exists(path, error))
         return {};
-    const std::string content = content_of(path), expected = header();
     const auto refuse = [&](const char* why) {
         context_.on_message(fmt::format("{}: {}; the hierarchy is built again", path.string(), why));
         return std::optional<DecimationResult>();
     };
+    std::string content;
+    try {
+        content = read_bytes(path);
+    } catch (const InputError&) {
+        return refuse("the cached hierarchy cannot be read");
+    }
+    const std::string expected = header();
     if (!content.starts_with(expected))
         return refuse("the cached hierarchy is stale or no such file: another version of plisse wrote it");
     auto result = from_bytes(std::string_view(content).substr(expected.size()));

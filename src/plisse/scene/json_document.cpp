@@ -1,8 +1,9 @@
 #include <plisse/scene/json_document.h>
 
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -267,7 +268,9 @@ std::string read_bytes(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     if (!in)
         throw InputError(path.string(), "the file cannot be opened", "give a file that exists and can be read");
-    return {std::istreambuf_iterator<char>(in), {}};
+    std::ostringstream bytes; // many times faster than byte by byte
+    bytes << in.rdbuf();
+    return std::move(bytes).str();
 }
 
 } // namespace plisse
