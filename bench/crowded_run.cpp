@@ -48,8 +48,8 @@ void record_step(ShellProblem& problem, VecX& x, double t, double h, CrowdedRun&
     NewtonOptions options;
     options.tolerance = 1e-3 * h;
     RecordedProblem recorded(problem, run);
-    SparseCholesky cholesky;
-    run.iterations += minimize(recorded, cholesky, x, options, context).iterations;
+    LinearSolver solver;
+    run.iterations += minimize(recorded, solver, x, options, context).iterations;
 }
 
 CrowdedRun record_run() {

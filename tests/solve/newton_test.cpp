@@ -113,9 +113,9 @@ TEST(Newton, FollowsAPrescribedEndAndSharesTheStretch) {
     SpringChain chain(6);
     chain.set_target(Vec3(7.5, 0, 0));
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    const NewtonSummary summary = minimize(chain, solver, x, {}, context);
     EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
     EXPECT_EQ(summary.remaining, 0);
     for (int v = 0; v < 6; ++v)
@@ -128,10 +128,10 @@ TEST(Newton, LengthensStepsOfAHessianThatIsTooStiff) {
     chain.set_target(Vec3(5, 0, 0));
     VecX x = chain.rest();
     x[6] += 0.2;
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
     double longest = 0;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context, [&](const NewtonIteration& iteration) {
+    const NewtonSummary summary = minimize(chain, solver, x, {}, context, [&](const NewtonIteration& iteration) {
         longest = std::max(longest, iteration.step_length);
     });
     EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
@@ -147,11 +147,11 @@ TEST(Newton, KeepsItsFactorWhereTheHessianHardlyChanges) {
     VecX x = chain.rest();
     for (int v = 1; v < 5; ++v)
         x[3 * v + 1] = 0.1 * v;
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
     NewtonOptions options;
     options.tolerance = 1e-10;
-    const NewtonSummary summary = minimize(chain, cholesky, x, options, context);
+    const NewtonSummary summary = minimize(chain, solver, x, options, context);
     EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
     EXPECT_LT(chain.assemblies(), summary.iterations); // one each, and one to see the end, without
     for (int v = 0; v < 6; ++v)
@@ -161,9 +161,9 @@ TEST(Newton, KeepsItsFactorWhereTheHessianHardlyChanges) {
 TEST(Newton, TakesNoStepAtRest) {
     SpringChain chain(4);
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    const NewtonSummary summary = minimize(chain, solver, x, {}, context);
     EXPECT_EQ(summary.end, NewtonEnd::converged);
     EXPECT_EQ(summary.iterations, 0);
     EXPECT_EQ(x, chain.rest());
@@ -173,12 +173,12 @@ TEST(Newton, SaysThatTheScriptIsBlockedAndByWhat) {
     SpringChain chain(4, 3.5);
     chain.set_target(Vec3(5, 0, 0));
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
     NewtonOptions options;
     options.tolerance = 1e-6;
     std::vector<std::string> causes;
-    const NewtonSummary summary = minimize(chain, cholesky, x, options, context, [&](const NewtonIteration& iteration) {
+    const NewtonSummary summary = minimize(chain, solver, x, options, context, [&](const NewtonIteration& iteration) {
         if (!iteration.limit.cause.empty())
             causes.push_back(iteration.limit.cause);
     });
@@ -200,9 +200,9 @@ TEST(Newton, LetsAScriptArriveThatIsNotInTheWay) {
     chain.set_target(Vec3(5, 0, 0));
     chain.set_first_target(Vec3(-1, 0, 0), 1);
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    const NewtonSummary summary = minimize(chain, solver, x, {}, context);
     EXPECT_EQ(summary.end, NewtonEnd::blocked) << summary.message;
     EXPECT_EQ(x[0], -1);
     EXPECT_LE(x[9], 3.5);
@@ -214,9 +214,9 @@ TEST(Newton, GoesOnWithAScriptThatWasHeldUp) {
     chain.open_wall_after(12);
     chain.set_target(Vec3(5, 0, 0));
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
-    const NewtonSummary summary = minimize(chain, cholesky, x, {}, context);
+    const NewtonSummary summary = minimize(chain, solver, x, {}, context);
     EXPECT_EQ(summary.end, NewtonEnd::converged) << summary.message;
     EXPECT_EQ(x[9], 5);
 }
@@ -225,20 +225,20 @@ TEST(Newton, NeverCallsACapConverged) {
     SpringChain chain(6);
     chain.set_target(Vec3(3, 4, 0));
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
     NewtonOptions options;
     options.max_iterations = 1;
-    EXPECT_EQ(minimize(chain, cholesky, x, options, context).end, NewtonEnd::iteration_cap);
+    EXPECT_EQ(minimize(chain, solver, x, options, context).end, NewtonEnd::iteration_cap);
 }
 
 TEST(Newton, EndsWhenCancelled) {
     SpringChain chain(6);
     VecX x = chain.rest();
-    SparseCholesky cholesky;
+    LinearSolver solver;
     Context context;
     context.cancel();
-    EXPECT_EQ(minimize(chain, cholesky, x, {}, context).end, NewtonEnd::cancelled);
+    EXPECT_EQ(minimize(chain, solver, x, {}, context).end, NewtonEnd::cancelled);
 }
 
 } // namespace

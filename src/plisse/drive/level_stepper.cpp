@@ -72,12 +72,12 @@ double LevelStepper::fraction(std::string_view phase) const {
 
 // Forgetting the ordering here and below makes a resumed run take the same steps, to the bit, as an uninterrupted one.
 void LevelStepper::begin_step(double t, double h, const VecX& anchor) {
-    cholesky_.reset();
+    solver_.reset();
     problem_.begin_step(as_positions(x_), as_positions(anchor), t, h, progress_.friction.reference.cols() == 0);
 }
 
 void LevelStepper::begin_settling_step(double t, double h) {
-    cholesky_.reset();
+    solver_.reset();
     problem_.begin_settling_step(as_positions(x_), t, h, progress_.friction);
 }
 
@@ -115,7 +115,7 @@ NewtonSummary LevelStepper::solve_step(double t, double tolerance, const char* p
     shown.step = report.steps + 1;
     shown.fraction = fraction(phase);
     const NewtonSummary summary =
-        minimize(problem_, cholesky_, x_, options, log_.context(), [&](const NewtonIteration& iteration) {
+        minimize(problem_, solver_, x_, options, log_.context(), [&](const NewtonIteration& iteration) {
             shown.iteration = iteration.iteration;
             shown.step_norm = iteration.step_norm / settings_.time_step;
             shown.gap = problem_.min_gap(x_);

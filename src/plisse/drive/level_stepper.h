@@ -71,7 +71,7 @@ private:
     bool is_last_;
     RunLog& log_;
     ShellProblem problem_;
-    SparseCholesky cholesky_;
+    LinearSolver solver_;
     VecX x_;
     Checkpoint progress_;
     std::string trouble_;

@@ -56,7 +56,7 @@ LimitRelaxationResult relax_to_strain_limits(const Discretization& discretizatio
     if (excess.faces == 0)
         return result;
     ShellProblem problem(discretization, level, EnergiesOf::level, context);
-    SparseCholesky cholesky;
+    LinearSolver solver;
     NewtonOptions options;
     options.tolerance = discretization.model().solve.tolerance * discretization.model().solve.time_step;
     options.max_iterations = iterations_of_round;
@@ -67,8 +67,8 @@ LimitRelaxationResult relax_to_strain_limits(const Discretization& discretizatio
         double stiffness = 1;
         for (int round = 0; round < most_rounds && excess.faces > 0 && !context.cancelled(); ++round) {
             problem.begin_relaxation(as_positions(unknowns), held, wanted_room, stiffness);
-            cholesky.reset();
-            result.iterations += minimize(problem, cholesky, unknowns, options, context).iterations;
+            solver.reset();
+            result.iterations += minimize(problem, solver, unknowns, options, context).iterations;
             const double before = excess.share + wanted_room;
             excess = limit.excess(as_positions(unknowns), wanted_room);
             if (excess.faces > 0 && excess.share + wanted_room > (1 - enough_progress) * before)

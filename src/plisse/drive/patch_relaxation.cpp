@@ -174,14 +174,14 @@ double relax_patch(ExpandingMesh& mesh, std::span<const int> free, double wanted
     const double distance = std::max(4 * wanted_gap, model.contact.thickness + model.contact.distance);
     const LocalMesh local = local_mesh(mesh, free, distance);
     PatchProblem problem(local, model.bodies.front().material, distance);
-    SparseCholesky cholesky;
+    LinearSolver solver;
     VecX x = as_vector(local.x);
     NewtonOptions options;
     options.tolerance = 1e-3 * wanted_gap;
     options.max_iterations = 30;
     double gap = 0;
     for (int round = 0; round < rounds; ++round) {
-        minimize(problem, cholesky, x, options, context);
+        minimize(problem, solver, x, options, context);
         gap = problem.gap(x);
         if (gap >= wanted_gap)
             break;

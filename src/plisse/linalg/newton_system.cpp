@@ -161,6 +161,24 @@ void NewtonSystem::add_prescribed_block(int i, int j, const Mat3& block) {
                 values(a, b) += block(a, b);
 }
 
+VecX NewtonSystem::multiply(const VecX& rows) const {
+    assert(rows.size() == 3 * row_count());
+    VecX product = VecX::Zero(rows.size());
+    for (int column = 0; column < row_count(); ++column) {
+        const Vec3 factor = rows.segment<3>(3 * column);
+        Vec3 sum = Vec3::Zero();
+        for (int k = column_starts_[at(column)]; k < column_starts_[at(column) + 1]; ++k) {
+            const Mat3& block = blocks_[at(block_numbers_[at(k)])];
+            const int row = block_rows_[at(k)];
+            product.segment<3>(3 * row) += block * factor;
+            if (row != column)
+                sum += block.transpose() * rows.segment<3>(3 * row);
+        }
+        product.segment<3>(3 * column) += sum;
+    }
+    return product;
+}
+
 VecX NewtonSystem::gather(const VecX& vertices) const {
     VecX rows(3 * row_count());
     for (int row = 0; row < row_count(); ++row)

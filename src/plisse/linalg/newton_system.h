@@ -82,6 +82,9 @@ public:
     const std::vector<Mat3>& blocks() const { return blocks_; }
     int pattern_version() const { return pattern_version_; }
 
+    /// H v, for rows v.
+    VecX multiply(const VecX& rows) const;
+
     /// Copies the free part of an n-vertex vector into rows and back (prescribed scalars read and write zero).
     VecX gather(const VecX& vertices) const;
     VecX scatter(const VecX& rows) const;

@@ -6,7 +6,7 @@
 
 #include <plisse/base/error.h>
 #include <plisse/decimate/level_prolongation.h>
-#include <plisse/linalg/cholesky.h>
+#include <plisse/linalg/linear_solver.h>
 #include <plisse/mesh/connectivity.h>
 #include <plisse/spatial/intersections.h>
 
@@ -190,7 +190,7 @@ Positions Discretization::restricted_start(int level) const {
         }
     const Connectivity connectivity(static_cast<int>(x.cols()), coarse.faces);
     NewtonSystem system(fixed, connectivity.edges());
-    SparseCholesky cholesky;
+    LinearSolver solver;
     system.begin({});
     for (const Anchor& anchor : coarse.to_finest) {
         if (anchor.face < 0)
@@ -202,12 +202,11 @@ Positions Discretization::restricted_start(int level) const {
                     system.add_block(face[at(i)], face[at(j)],
                                      anchor.weights[i] * anchor.weights[j] * Mat3::Identity());
     }
-    if (!cholesky.factorize(system))
-        cholesky.factorize(system, 1e-9);
+    solver.factorize(system);
     for (int round = 0; round < 8; ++round) {
         const Positions residual = target - prolongation.apply(x);
         const VecX step =
-            system.scatter(cholesky.solve(system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
+            system.scatter(solver.solve(system, system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
         x += as_positions(step);
     }
     const auto skip = [&](int a, int b) {

@@ -21,23 +21,11 @@ struct Direction {
     int worst_vertex = -1;
 };
 
-/// Factorises, shifting the diagonal where round-off has made H indefinite. Returns the shift.
-double factorize_shifted(SparseCholesky& cholesky, const NewtonSystem& system) {
-    double shift = 0;
-    while (!cholesky.factorize(system, shift)) {
-        double largest = 0;
-        for (const Mat3& block : system.blocks())
-            largest = std::max(largest, block.cwiseAbs().maxCoeff());
-        shift = std::max(1e-12 * largest, 10 * shift);
-    }
-    return shift;
-}
-
 /// One minimisation: the state that its iterations share.
 class Newton {
 public:
-    Newton(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options, Context& context)
-        : objective_(objective), cholesky_(cholesky), x_(x), options_(options), context_(context),
+    Newton(Objective& objective, LinearSolver& solver, VecX& x, const NewtonOptions& options, Context& context)
+        : objective_(objective), solver_(solver), x_(x), options_(options), context_(context),
           script_(objective.system().prescribed(), objective.script_of()) {}
 
     NewtonSummary run(const std::function<void(const NewtonIteration&)>& observe) {
@@ -148,19 +136,21 @@ private:
         objective_.gradient(x_, gradient_);
         objective_.system().set_prescribed_step(u);
         if (full_step_ && !script_.drives() && factor_is_current_choice()) {
-            const Direction simplified = solve(u);
+            const Direction simplified = solve(u, Accuracy::rough);
             if (simplified.norm <= simplified_contraction * summary_.step_norm)
                 return chosen(simplified);
         }
         factorize(objective_.system());
-        return chosen(solve(u));
+        return chosen(solve(u, Accuracy::fine));
     }
 
-    Direction solve(const VecX& u) {
+    enum class Accuracy { rough, fine };
+
+    Direction solve(const VecX& u, Accuracy accuracy) {
         PhaseScope scope(context_.times, Phase::linear_solve);
         const NewtonSystem& system = objective_.system();
         const VecX rhs = system.gather(-gradient_ - system.coupling());
-        const VecX solution = cholesky_.solve(rhs);
+        const VecX solution = accuracy == Accuracy::fine ? solver_.solve(system, rhs) : solver_.solve_roughly(rhs);
         Direction direction;
         const VecX free_step = system.scatter(solution);
         direction.d = free_step + u;
@@ -190,7 +180,7 @@ private:
         if (full_step_ && !script_.drives() && exact_wait_ == 0) {
             objective_.assemble(x_, system, false);
             PhaseScope scope(context_.times, Phase::linear_solve);
-            if (cholesky_.factorize(system)) {
+            if (solver_.try_factorize(system)) {
                 exact_failures_ = 0;
                 shift_ = 0;
                 factor_ = Factor::exact;
@@ -201,7 +191,7 @@ private:
         exact_wait_ = std::max(0, exact_wait_ - 1);
         objective_.assemble(x_, system, true);
         PhaseScope scope(context_.times, Phase::linear_solve);
-        shift_ = factorize_shifted(cholesky_, system);
+        shift_ = solver_.factorize(system);
         factor_ = Factor::projected;
     }
 
@@ -286,7 +276,7 @@ private:
     }
 
     Objective& objective_;
-    SparseCholesky& cholesky_;
+    LinearSolver& solver_;
     VecX& x_;
     const NewtonOptions& options_;
     Context& context_;
@@ -330,9 +320,9 @@ double largest_nodal_norm(const VecX& vector, int* where) {
     return largest;
 }
 
-NewtonSummary minimize(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options,
+NewtonSummary minimize(Objective& objective, LinearSolver& solver, VecX& x, const NewtonOptions& options,
                        Context& context, const std::function<void(const NewtonIteration&)>& observe) {
-    return Newton(objective, cholesky, x, options, context).run(observe);
+    return Newton(objective, solver, x, options, context).run(observe);
 }
 
 } // namespace plisse

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <plisse/base/context.h>
-#include <plisse/linalg/cholesky.h>
+#include <plisse/linalg/linear_solver.h>
 #include <plisse/solve/objective.h>
 
 namespace plisse {
@@ -55,7 +55,7 @@ struct NewtonSummary {
 /// are cut again and again, they are taken back and the script is held until the free unknowns are at their minimum,
 /// then driven on; drives that lead nowhere end in `blocked`. Calls observe after each step, and on_progress through
 /// it.
-NewtonSummary minimize(Objective& objective, SparseCholesky& cholesky, VecX& x, const NewtonOptions& options,
+NewtonSummary minimize(Objective& objective, LinearSolver& solver, VecX& x, const NewtonOptions& options,
                        Context& context, const std::function<void(const NewtonIteration&)>& observe = {});
 
 /// Largest Euclidean norm over the vertices of a vector of 3 per vertex, and where it is.
