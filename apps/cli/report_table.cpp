@@ -31,13 +31,20 @@ std::string headline(const StoredReport& stored) {
     return r.message.empty() ? text : text + r.message + "\n";
 }
 
+/// Mean and largest.
+std::string distance_in_words(const PreviewDistance& distance) {
+    return std::isfinite(distance.mean) ? fmt::format("{:.2g} / {:.2g}", 1e3 * distance.mean, 1e3 * distance.largest)
+                                        : "-";
+}
+
 std::string level_rows(const RunReport& report) {
-    std::string text = fmt::format("\n{:>5} {:>9} {:>9} {:>6} {:>10} {:>11} {:>8} {:>10} {:>9}\n", "level", "vertices",
-                                   "faces", "steps", "iterations", "equilibrium", "gap mm", "stretch", "residual");
+    std::string text =
+        fmt::format("\n{:>5} {:>9} {:>9} {:>6} {:>10} {:>11} {:>8} {:>10} {:>9} {:>16}\n", "level", "vertices", "faces",
+                    "steps", "iterations", "equilibrium", "gap mm", "stretch", "residual", "to final, mm");
     for (const LevelReport& l : report.levels)
-        text += fmt::format("{:>5} {:>9} {:>9} {:>6} {:>10} {:>11} {:>8} {:>10.4g} {:>9.2g}\n", l.level, l.vertices,
-                            l.faces, l.steps, l.newton_iterations, l.equilibrium ? "yes" : "no", millimetres(l.min_gap),
-                            l.max_stretch, l.residual);
+        text += fmt::format("{:>5} {:>9} {:>9} {:>6} {:>10} {:>11} {:>8} {:>10.4g} {:>9.2g} {:>16}\n", l.level,
+                            l.vertices, l.faces, l.steps, l.newton_iterations, l.equilibrium ? "yes" : "no",
+                            millimetres(l.min_gap), l.max_stretch, l.residual, distance_in_words(l.to_final));
     return text;
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -52,6 +53,10 @@ TEST(Run, DrapesProgressivelyWithoutAnIntersection) {
     EXPECT_GT(result.report.levels.back().energy.contact, 0);
     for (const LevelReport& level : result.report.levels)
         EXPECT_TRUE(level.equilibrium) << level.level;
+    const auto off = [&](std::size_t level) { return result.report.levels[level].to_final; };
+    EXPECT_LT(off(1).mean, off(0).mean);
+    EXPECT_LT(off(0).mean, off(0).largest);
+    EXPECT_TRUE(std::isinf(off(2).mean));
     // The ball carries the cloth's weight.
     const Material& material = model.bodies[0].material;
     const double weight = 0.36 * material.thickness * material.density * 9.81;
@@ -104,6 +109,9 @@ TEST(Run, ResumesToTheSameBits) {
         const RunResult resumed = run_to_end(model, rest, options);
         EXPECT_EQ(resumed.report.status, RunStatus::converged);
         EXPECT_EQ(resumed.positions, uninterrupted.positions);
+        for (std::size_t level = 0; level < resumed.report.levels.size(); ++level)
+            EXPECT_EQ(resumed.report.levels[level].to_final.largest,
+                      uninterrupted.report.levels[level].to_final.largest);
     }
 }
 

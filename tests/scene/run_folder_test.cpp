@@ -37,6 +37,7 @@ RunReport sample_report() {
     level.vertices = 4;
     level.min_gap = infinity;
     level.max_stretch = 1.1;
+    level.to_final = {1e-3 / 3, infinity};
     level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
     level.seconds[Phase::ccd] = 0.1 + 0.2;
     level.total_seconds = 2.0 / 3;
@@ -63,6 +64,7 @@ Checkpoint sample_checkpoint(std::uint64_t seed) {
     c.t = 0.7;
     c.positions = random_positions(50, seed);
     c.velocity = random_positions(50, seed + 1);
+    c.previews = {random_positions(7, seed + 2), random_positions(20, seed + 3)};
     c.frame_numbers = {3, 1};
     c.report = sample_report();
     return c;
@@ -80,6 +82,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_EQ(a.t, b.t);
     EXPECT_EQ(a.positions, b.positions);
     EXPECT_EQ(a.velocity, b.velocity);
+    EXPECT_EQ(a.previews, b.previews);
     EXPECT_EQ(a.frame_numbers, b.frame_numbers);
     EXPECT_EQ(report_to_json(a.report, {}), report_to_json(b.report, {}));
 }
@@ -91,7 +94,7 @@ TEST(ReportJson, HasTheContractsKeysAndReadsBackToTheBit) {
                             "intersecting_pairs", "levels", "refinements", "reactions", "lagging"})
         EXPECT_TRUE(json.contains(key)) << key;
     for (const char* key : {"level", "vertices", "faces", "steps", "newton_iterations", "equilibrium", "min_gap",
-                            "max_stretch", "residual", "energy", "seconds"})
+                            "max_stretch", "residual", "to_final", "energy", "seconds"})
         EXPECT_TRUE(json["levels"][0].contains(key)) << key;
     for (const char* key :
          {"total", "elastic", "contact", "linear_solve", "line_search", "broad_phase", "ccd", "other"})

@@ -7,6 +7,7 @@
 #include <plisse/base/context.h>
 #include <plisse/contact/friction.h>
 #include <plisse/decimate/hierarchy.h>
+#include <plisse/drive/preview_distance.h>
 #include <plisse/solve/objective.h>
 
 namespace plisse {
@@ -45,9 +46,10 @@ struct EnergyParts {
 struct LevelReport {
     int level = 0, vertices = 0, faces = 0, steps = 0, newton_iterations = 0;
     bool equilibrium = false;
-    double min_gap = 0;     ///< m; infinity where no pair is in contact range
-    double max_stretch = 1; ///< largest principal stretch of the level's own faces
-    double residual = 0;    ///< largest nodal force of the total over the largest of any one term
+    double min_gap = 0;       ///< m; infinity where no pair is in contact range
+    double max_stretch = 1;   ///< largest principal stretch of the level's own faces
+    double residual = 0;      ///< largest nodal force of the total over the largest of any one term
+    PreviewDistance to_final; ///< of the level's last state, once there is a finest result
     EnergyParts energy;
     PhaseTimes seconds;
     double total_seconds = 0;
@@ -92,18 +94,19 @@ struct RunReport {
 /// Everything needed to go on with a run after the last completed step. A refinement counts as one step.
 struct Checkpoint {
     int level = 0;
-    int step = 0;                   ///< steps of the timeline done
-    int settle_step = 0;            ///< settling steps done on this level
-    double settle_time_step = 0;    ///< s, of the next settling step
-    double settle_tolerance = 0;    ///< m/s, of the next settling step
-    double stiffness_factor = 1;    ///< of the barrier
-    bool stiffening_helps = true;   ///< whether a stiffer barrier has widened the smallest gaps of this level so far
-    bool settled = false;           ///< this level is done
-    double t = 0;                   ///< s
-    Positions positions;            ///< of the level's vertices, exact
-    Positions velocity;             ///< m/s, of the same vertices, in the last step of the timeline; empty before it
-    FrictionMemory friction;        ///< of the level's contacts
-    std::vector<int> frame_numbers; ///< next frame number per level
+    int step = 0;                    ///< steps of the timeline done
+    int settle_step = 0;             ///< settling steps done on this level
+    double settle_time_step = 0;     ///< s, of the next settling step
+    double settle_tolerance = 0;     ///< m/s, of the next settling step
+    double stiffness_factor = 1;     ///< of the barrier
+    bool stiffening_helps = true;    ///< whether a stiffer barrier has widened the smallest gaps of this level so far
+    bool settled = false;            ///< this level is done
+    double t = 0;                    ///< s
+    Positions positions;             ///< of the level's vertices, exact
+    Positions velocity;              ///< m/s, of the same vertices, in the last step of the timeline; empty before it
+    FrictionMemory friction;         ///< of the level's contacts
+    std::vector<Positions> previews; ///< the last states of the levels before, from the coarsest
+    std::vector<int> frame_numbers;  ///< next frame number per level
     RunReport report;
 };
 

@@ -47,6 +47,7 @@ private:
     void check_limits(int level, const Positions& x) const;
     void finish(LevelStepper& stepper);
     void find_lagging(LevelStepper& stepper);
+    void find_preview_distances(const Checkpoint& finest);
     void find_reactions(LevelStepper& stepper);
     Checkpoint fresh_progress(int level, const Positions& x) const;
     void fail(RunStatus status, const std::string& message);
@@ -216,8 +217,12 @@ bool Driver::simulate() {
         if (!refined)
             return false;
         log_.frame(level + 1, duration_, "refine", *refined);
+        std::vector<Positions> previews = std::move(stepper.progress().previews);
+        previews.push_back(stepper.positions());
+        const double stiffness_factor = stepper.progress().stiffness_factor;
         progress = fresh_progress(level + 1, *refined);
-        progress.stiffness_factor = stepper.progress().stiffness_factor;
+        progress.previews = std::move(previews);
+        progress.stiffness_factor = stiffness_factor;
         result_.level = level + 1;
         result_.positions = *refined;
         log_.checkpoint(progress);
@@ -228,6 +233,7 @@ void Driver::finish(LevelStepper& stepper) {
     stepper.measure();
     find_lagging(stepper);
     find_reactions(stepper);
+    find_preview_distances(stepper.progress());
     if (!log_.report().lagging.empty())
         fail(RunStatus::not_converged, "a script could not be followed");
     if (log_.report().intersecting_pairs > 0)
@@ -268,6 +274,12 @@ void Driver::find_lagging(LevelStepper& stepper) {
         if (lags[s].vertices > 0)
             log_.report().lagging.push_back(lags[s]);
     }
+}
+
+void Driver::find_preview_distances(const Checkpoint& finest) {
+    for (std::size_t level = 0; level < finest.previews.size(); ++level)
+        log_.level_report(static_cast<int>(level)).to_final =
+            preview_distance(discretization_, static_cast<int>(level), finest.previews[level], result_.positions);
 }
 
 /// What holds each handle and obstacle in place: the gradient of the energy on its vertices.

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format = 2;
+constexpr int format = 3;
 
 std::string state_file_name(int number) {
     return fmt::format("state-{}.bin", number);
@@ -25,6 +25,7 @@ std::string state_file_name(int number) {
 struct State {
     Positions positions, velocity, friction_reference, elastic_slip;
     Eigen::Matrix<int, 3, Eigen::Dynamic> rubbing; ///< kind and primitives
+    std::vector<Positions> previews;
 
     template <typename Visit>
     void for_each(const Visit& visit) {
@@ -33,11 +34,13 @@ struct State {
         visit(friction_reference);
         visit(elastic_slip);
         visit(rubbing);
+        for (Positions& preview : previews)
+            visit(preview);
     }
 };
 
 State state_of(const Checkpoint& c) {
-    State state{c.positions, c.velocity, c.friction.reference, {}, {}};
+    State state{c.positions, c.velocity, c.friction.reference, {}, {}, c.previews};
     const auto pairs = static_cast<Eigen::Index>(c.friction.pairs.size());
     state.elastic_slip.resize(3, pairs);
     state.rubbing.resize(3, pairs);
@@ -57,6 +60,7 @@ void restore(State state, Checkpoint& c) {
     c.positions = std::move(state.positions);
     c.velocity = std::move(state.velocity);
     c.friction.reference = std::move(state.friction_reference);
+    c.previews = std::move(state.previews);
 }
 
 std::string bytes_of(State state) {
@@ -77,6 +81,8 @@ std::optional<State> state_from(std::string_view bytes, const Json& manifest) {
     state.friction_reference.resize(3, manifest.at("friction_references").get<int>());
     state.elastic_slip.resize(3, manifest.at("rubbing_pairs").get<int>());
     state.rubbing.resize(3, state.elastic_slip.cols());
+    for (const Json& vertices : manifest.at("preview_vertices"))
+        state.previews.emplace_back(3, vertices.get<int>());
     bool complete = true;
     state.for_each([&](auto& array) {
         const std::size_t size = static_cast<std::size_t>(array.size()) * sizeof(*array.data());
@@ -91,6 +97,9 @@ std::optional<State> state_from(std::string_view bytes, const Json& manifest) {
 
 Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& hash) {
     const Checkpoint& c = saved.checkpoint;
+    Json preview_vertices = Json::array();
+    for (const Positions& preview : c.previews)
+        preview_vertices.push_back(preview.cols());
     return {{"format", format},
             {"state", state},
             {"fnv1a64", hash},
@@ -98,6 +107,7 @@ Json manifest_json(const SavedCheckpoint& saved, int state, const std::string& h
             {"velocities", c.velocity.cols()},
             {"friction_references", c.friction.reference.cols()},
             {"rubbing_pairs", c.friction.pairs.size()},
+            {"preview_vertices", preview_vertices},
             {"level", c.level},
             {"step", c.step},
             {"settle_step", c.settle_step},

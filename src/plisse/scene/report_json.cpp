@@ -53,6 +53,8 @@ Json level_json(const LevelReport& level) {
             {"min_gap", finite_or_null(level.min_gap)},
             {"max_stretch", finite_or_null(level.max_stretch)},
             {"residual", finite_or_null(level.residual)},
+            {"to_final",
+             {{"mean", finite_or_null(level.to_final.mean)}, {"largest", finite_or_null(level.to_final.largest)}}},
             {"energy",
              {{"elastic", level.energy.elastic},
               {"strain_limit", level.energy.strain_limit},
@@ -74,6 +76,8 @@ LevelReport level_from(const Json& json) {
     level.min_gap = number_or_infinity(json.at("min_gap"));
     level.max_stretch = number_or_infinity(json.at("max_stretch"));
     level.residual = number_or_infinity(json.at("residual"));
+    level.to_final = {number_or_infinity(json.at("to_final").at("mean")),
+                      number_or_infinity(json.at("to_final").at("largest"))};
     const Json& energy = json.at("energy");
     level.energy.elastic = number_or_infinity(energy.at("elastic"));
     level.energy.strain_limit = number_or_infinity(energy.at("strain_limit"));
