@@ -3,30 +3,14 @@
 #include <filesystem>
 #include <functional>
 
-#include <plisse/drive/run.h>
 #include <plisse/scene/build_model.h>
 #include <plisse/scene/read_scene.h>
 
-#include "exact_intersections.h"
+#include "scene/judge.h"
 
 namespace {
 
 using namespace plisse;
-
-/// Judges every frame with predicates that share no code with the solver.
-struct Judge : Recorder {
-    explicit Judge(int count) : bodies(count) {}
-    void on_hierarchy(const Hierarchy& h) override { hierarchy = h; }
-    void on_frame(const Frame& frame) override {
-        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(frame.level)];
-        intersections += count_intersections(*frame.positions, level, bodies);
-        ++frames;
-    }
-    void on_iteration(const IterationRecord&) override { ++iterations; }
-    int bodies;
-    Hierarchy hierarchy;
-    int intersections = 0, frames = 0, iterations = 0;
-};
 
 using Reduce = std::function<void(Scene&)>;
 
