@@ -7,7 +7,6 @@ namespace plisse {
 
 bool LinearSolver::try_factorize(const NewtonSystem& system) {
     plan_.adapt_to(system);
-    shift_ = 0;
     return precision_ == Precision::single ? single_.factorize(plan_, system) : full_.factorize(plan_, system);
 }
 
@@ -18,9 +17,10 @@ double LinearSolver::factorize(const NewtonSystem& system) {
     double largest = 0;
     for (const Mat3& block : system.blocks())
         largest = std::max(largest, block.cwiseAbs().maxCoeff());
-    while (!full_.factorize(plan_, system, shift_))
-        shift_ = std::max(1e-12 * largest, 10 * shift_);
-    return shift_;
+    double shift = 0;
+    while (!full_.factorize(plan_, system, shift))
+        shift = std::max(1e-12 * largest, 10 * shift);
+    return shift;
 }
 
 void LinearSolver::reset() {
@@ -38,7 +38,7 @@ VecX LinearSolver::solve(const NewtonSystem& system, const VecX& right_hand_side
     double energy = residual.dot(correction);
     const double enough = tolerance * tolerance * energy;
     for (int k = 0; energy > enough && k < most_iterations; ++k) {
-        const VecX product = system.multiply(direction) + shift_ * direction;
+        const VecX product = system.multiply(direction);
         const double curvature = direction.dot(product);
         if (!(curvature > 0))
             break;
@@ -49,7 +49,7 @@ VecX LinearSolver::solve(const NewtonSystem& system, const VecX& right_hand_side
         const double before = std::exchange(energy, residual.dot(correction));
         direction = correction + energy / before * direction;
     }
-    if (energy > enough && full_.factorize(plan_, system, shift_)) {
+    if (energy > enough && full_.factorize(plan_, system)) {
         precision_ = Precision::full;
         return full_.solve(plan_, right_hand_side);
     }

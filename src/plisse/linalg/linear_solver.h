@@ -34,7 +34,6 @@ private:
     SparseCholesky<float> single_;
     SparseCholesky<double> full_;
     Precision precision_ = Precision::single;
-    double shift_ = 0;
 };
 
 } // namespace plisse
