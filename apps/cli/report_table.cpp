@@ -86,11 +86,20 @@ std::string ranges_in_words(const Lag& lag) {
     return fmt::format("{}", fmt::join(ranges, ", "));
 }
 
-std::string script_rows(const RunReport& report) {
+/// Level by level: how well a preview foretells what a handle feels.
+std::string reaction_rows(const RunReport& report) {
     std::string text;
-    for (const Reaction& r : report.reactions)
-        text += fmt::format("reaction of {}: force ({:.4g}, {:.4g}, {:.4g}) N, torque ({:.4g}, {:.4g}, {:.4g}) N m\n",
-                            r.name, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(), r.torque.z());
+    for (const LevelReport& level : report.levels)
+        for (const Reaction& r : level.reactions)
+            text += fmt::format("level {} reaction of {}: force ({:.4g}, {:.4g}, {:.4g}) N, torque ({:.4g}, {:.4g}, "
+                                "{:.4g}) N m\n",
+                                level.level, r.name, r.force.x(), r.force.y(), r.force.z(), r.torque.x(), r.torque.y(),
+                                r.torque.z());
+    return text;
+}
+
+std::string script_rows(const RunReport& report) {
+    std::string text = reaction_rows(report);
     for (const Lag& lag : report.lagging)
         text += fmt::format("{} is short of its target by up to {} mm: {} vertices, {}\n", lag.name,
                             millimetres(lag.distance), lag.vertices, ranges_in_words(lag));

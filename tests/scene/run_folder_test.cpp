@@ -39,6 +39,7 @@ RunReport sample_report() {
     level.max_stretch = 1.1;
     level.to_final = {1e-3 / 3, infinity};
     level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
+    level.reactions = {{"left", Vec3(0, 0.1 / 7, 0), Vec3::Ones()}};
     level.seconds[Phase::ccd] = 0.1 + 0.2;
     level.total_seconds = 2.0 / 3;
     report.levels = {level};
@@ -94,7 +95,7 @@ TEST(ReportJson, HasTheContractsKeysAndReadsBackToTheBit) {
                             "intersecting_pairs", "levels", "refinements", "reactions", "lagging"})
         EXPECT_TRUE(json.contains(key)) << key;
     for (const char* key : {"level", "vertices", "faces", "steps", "newton_iterations", "equilibrium", "min_gap",
-                            "max_stretch", "residual", "to_final", "energy", "seconds"})
+                            "max_stretch", "residual", "to_final", "energy", "reactions", "seconds"})
         EXPECT_TRUE(json["levels"][0].contains(key)) << key;
     for (const char* key :
          {"total", "elastic", "contact", "linear_solve", "line_search", "broad_phase", "ccd", "other"})

@@ -42,6 +42,12 @@ struct EnergyParts {
     double elastic = 0, strain_limit = 0, contact = 0, friction = 0, gravity = 0, loads = 0; ///< J
 };
 
+/// What holds a handle or obstacle in its place.
+struct Reaction {
+    std::string name;
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); ///< N and N m about the origin
+};
+
 /// What became of one level; the fields of report.json's "levels".
 struct LevelReport {
     int level = 0, vertices = 0, faces = 0, steps = 0, newton_iterations = 0;
@@ -51,6 +57,7 @@ struct LevelReport {
     double residual = 0;      ///< largest nodal force of the total over the largest of any one term
     PreviewDistance to_final; ///< of the level's last state, once there is a finest result
     EnergyParts energy;
+    std::vector<Reaction> reactions; ///< of every handle and obstacle, at the level's last state
     PhaseTimes seconds;
     double total_seconds = 0;
 };
@@ -61,11 +68,6 @@ struct RefinementReport {
     int strain_limit_iterations = 0; ///< of Newton's method, to bring them there
     double min_gap = 0;
     double total_seconds = 0;
-};
-
-struct Reaction {
-    std::string name;
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero(); ///< N and N m about the origin
 };
 
 /// A handle or obstacle that did not reach its scripted place.
@@ -87,7 +89,7 @@ struct RunReport {
     int intersecting_pairs = 0;
     std::vector<LevelReport> levels;
     std::vector<RefinementReport> refinements;
-    std::vector<Reaction> reactions;
+    std::vector<Reaction> reactions; ///< those of the finest level
     std::vector<Lag> lagging;
 };
 

@@ -48,7 +48,7 @@ private:
     void finish(LevelStepper& stepper);
     void find_lagging(LevelStepper& stepper);
     void find_preview_distances(const Checkpoint& finest);
-    void find_reactions(LevelStepper& stepper);
+    std::vector<Reaction> reactions_of(LevelStepper& stepper) const;
     Checkpoint fresh_progress(int level, const Positions& x) const;
     void fail(RunStatus status, const std::string& message);
 
@@ -168,6 +168,7 @@ bool Driver::run_level(LevelStepper& stepper) {
         fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium{}", level,
                                                    stepper.trouble().empty() ? "" : " (" + stepper.trouble() + ")"));
     stepper.measure();
+    log_.level_report(level).reactions = reactions_of(stepper);
     log_.frame(level, duration_, level == last_level_ ? "final" : "settle", stepper.positions());
     progress.settled = true;
     progress.positions = stepper.positions();
@@ -232,7 +233,7 @@ bool Driver::simulate() {
 void Driver::finish(LevelStepper& stepper) {
     stepper.measure();
     find_lagging(stepper);
-    find_reactions(stepper);
+    log_.report().reactions = log_.level_report(result_.level).reactions;
     find_preview_distances(stepper.progress());
     if (!log_.report().lagging.empty())
         fail(RunStatus::not_converged, "a script could not be followed");
@@ -282,9 +283,9 @@ void Driver::find_preview_distances(const Checkpoint& finest) {
             preview_distance(discretization_, static_cast<int>(level), finest.previews[level], result_.positions);
 }
 
-/// What holds each handle and obstacle in place: the gradient of the energy on its vertices.
-void Driver::find_reactions(LevelStepper& stepper) {
-    const int level = result_.level;
+/// The gradient of the energy on the vertices of each handle and obstacle.
+std::vector<Reaction> Driver::reactions_of(LevelStepper& stepper) const {
+    const int level = stepper.progress().level;
     const Positions x = stepper.positions();
     const Positions holding = -stepper.problem().forces(stepper.unknowns()).total();
     std::vector<Reaction> reactions;
@@ -308,7 +309,7 @@ void Driver::find_reactions(LevelStepper& stepper) {
         if (model_.is_obstacle(part))
             add(model_.handles.size() + at(part) - model_.bodies.size(), x.col(v), holding.col(v));
     }
-    log_.report().reactions = std::move(reactions);
+    return reactions;
 }
 
 RunResult Driver::run() {

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format = 3;
+constexpr int format = 4;
 
 std::string state_file_name(int number) {
     return fmt::format("state-{}.bin", number);

@@ -29,6 +29,20 @@ Vec3 vector_from(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
+Json reactions_json(const std::vector<Reaction>& reactions) {
+    Json json = Json::object();
+    for (const Reaction& reaction : reactions)
+        json[reaction.name] = {{"force", vector_json(reaction.force)}, {"torque", vector_json(reaction.torque)}};
+    return json;
+}
+
+std::vector<Reaction> reactions_from(const Json& json) {
+    std::vector<Reaction> reactions;
+    for (const auto& [name, reaction] : json.items())
+        reactions.push_back({name, vector_from(reaction.at("force")), vector_from(reaction.at("torque"))});
+    return reactions;
+}
+
 Json seconds_json(const PhaseTimes& times, double total) {
     Json json = {{"total", total}};
     for (int phase = 0; phase < phase_count; ++phase)
@@ -62,6 +76,7 @@ Json level_json(const LevelReport& level) {
               {"friction", level.energy.friction},
               {"gravity", level.energy.gravity},
               {"loads", level.energy.loads}}},
+            {"reactions", reactions_json(level.reactions)},
             {"seconds", seconds_json(level.seconds, level.total_seconds)}};
 }
 
@@ -85,6 +100,7 @@ LevelReport level_from(const Json& json) {
     level.energy.friction = number_or_infinity(energy.at("friction"));
     level.energy.gravity = number_or_infinity(energy.at("gravity"));
     level.energy.loads = number_or_infinity(energy.at("loads"));
+    level.reactions = reactions_from(json.at("reactions"));
     level.seconds = seconds_from(json.at("seconds"));
     json.at("seconds").at("total").get_to(level.total_seconds);
     return level;
@@ -150,15 +166,12 @@ Json report_to_json(const RunReport& report, const ProcessFacts& process) {
                  {"intersecting_pairs", report.intersecting_pairs},
                  {"levels", Json::array()},
                  {"refinements", Json::array()},
-                 {"reactions", Json::object()},
+                 {"reactions", reactions_json(report.reactions)},
                  {"lagging", Json::array()}};
     for (const LevelReport& level : report.levels)
         json["levels"].push_back(level_json(level));
     for (const RefinementReport& refinement : report.refinements)
         json["refinements"].push_back(refinement_json(refinement));
-    for (const Reaction& reaction : report.reactions)
-        json["reactions"][reaction.name] = {{"force", vector_json(reaction.force)},
-                                            {"torque", vector_json(reaction.torque)}};
     for (const Lag& lag : report.lagging)
         json["lagging"].push_back({{"name", lag.name},
                                    {"vertices", lag.vertices},
@@ -179,8 +192,7 @@ RunReport report_from_json(const Json& json) {
         report.levels.push_back(level_from(level));
     for (const Json& refinement : json.at("refinements"))
         report.refinements.push_back(refinement_from(refinement));
-    for (const auto& [name, reaction] : json.at("reactions").items())
-        report.reactions.push_back({name, vector_from(reaction.at("force")), vector_from(reaction.at("torque"))});
+    report.reactions = reactions_from(json.at("reactions"));
     for (const Json& lag : json.at("lagging"))
         report.lagging.push_back({lag.at("name").get<std::string>(), lag.at("vertices").get<int>(),
                                   number_or_infinity(lag.at("distance")),
