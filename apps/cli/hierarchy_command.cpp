@@ -88,6 +88,10 @@ Json verification_json(const LevelVerification& v) {
             {"coincident_images", v.coincident_images},
             {"mapped_faces", v.mapped_faces},
             {"folded_faces", v.folded_faces},
+            {"missing_ways_back", v.missing_ways_back},
+            {"return_error", {{"mean", v.mean_return_error}, {"largest", v.largest_return_error}}},
+            {"distance", v.distance},
+            {"new_intersections", v.new_intersections},
             {"holds", v.holds()}};
 }
 
@@ -114,6 +118,9 @@ bool print_verification(const std::vector<LevelVerification>& verifications, con
             "faces folded {} of {}: {}\n",
             v.worst_weight, v.worst_sum, v.missing_anchors, v.coincident_images, v.folded_faces, v.mapped_faces,
             v.holds() ? "holds" : "does NOT hold");
+        fmt::print("  way back: vertices without place {}, there and back off by {:.1e} (mean) and {:.1e} (largest) of "
+                   "the diagonal\n  surface: off by {:.2e} of the diagonal (Hausdorff), new intersections {}\n",
+                   v.missing_ways_back, v.mean_return_error, v.largest_return_error, v.distance, v.new_intersections);
         holds = holds && v.holds();
     }
     fmt::print("points carried outside their patch: {} (worst {:.1e}), topology {}\n", summary.location_errors,

@@ -5,15 +5,16 @@
 #include <plisse/mesh/generate.h>
 #include <plisse/scene/hierarchy_folder.h>
 #include <plisse/scene/verify_hierarchy.h>
+#include <plisse/spatial/box.h>
 
 #include "temporary_folder.h"
 
 namespace plisse {
 namespace {
 
-DecimationResult decimated_sphere() {
+DecimationResult decimated(GeneratorShape shape) {
     GeneratorOptions options;
-    options.shape = GeneratorShape::sphere;
+    options.shape = shape;
     options.edge_length = 0.12;
     const TriangleMesh mesh = generate_mesh(options);
     const std::vector<int> part(static_cast<std::size_t>(mesh.vertex_count()), 0);
@@ -23,6 +24,10 @@ DecimationResult decimated_sphere() {
     DecimationResult result;
     result.hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, decimation, nullptr, &result.summary);
     return result;
+}
+
+DecimationResult decimated_sphere() {
+    return decimated(GeneratorShape::sphere);
 }
 
 TEST(HierarchyFolder, ReadsBackWhatWasWritten) {
@@ -79,7 +84,11 @@ TEST(VerifyHierarchy, HoldsForADecimationAndFailsForABrokenMap) {
         EXPECT_TRUE(level.holds()) << "level " << level.level << " rest " << level.rest_error << " rigid "
                                    << level.rigid_error;
         EXPECT_GT(level.mapped_faces, 0);
+        EXPECT_GT(level.distance, 0);
+        EXPECT_GT(level.mean_return_error, 0);
+        EXPECT_LT(level.mean_return_error, 0.01); // a tenth of a coarse edge
     }
+    EXPECT_LT(good[1].distance, good[0].distance);
     Hierarchy negative = hierarchy;
     negative.levels[0].to_finest[7].weights = Vec3(-0.1, 0.6, 0.5);
     EXPECT_FALSE(verify_hierarchy(negative)[0].holds());
@@ -89,6 +98,34 @@ TEST(VerifyHierarchy, HoldsForADecimationAndFailsForABrokenMap) {
     Hierarchy missing = hierarchy;
     missing.levels[0].to_finest[7].face = -1;
     EXPECT_FALSE(verify_hierarchy(missing)[0].holds());
+    Hierarchy one_way = hierarchy;
+    one_way.levels[0].on_finest[3].face = -1;
+    EXPECT_FALSE(verify_hierarchy(one_way)[0].holds());
+    EXPECT_EQ(verify_hierarchy(one_way)[0].missing_ways_back, 1);
+    Hierarchy crossed = hierarchy;
+    crossed.levels[0].rest.col(3) *= -1;
+    EXPECT_GT(verify_hierarchy(crossed)[0].new_intersections, 0);
+}
+
+TEST(VerifyHierarchy, MeasuresTheDistanceFromASphere) {
+    // Every vertex of a decimated sphere of radius 0.5 is within the error of its quadrics from it: the largest
+    // distance is that of finest vertices from the middles of coarse faces.
+    const Hierarchy hierarchy = decimated_sphere().hierarchy;
+    const HierarchyLevel& level = hierarchy.levels[0];
+    double lowest = 0.5;
+    for (const Face& face : level.faces)
+        lowest = std::min(lowest,
+                          ((level.rest.col(face[0]) + level.rest.col(face[1]) + level.rest.col(face[2])) / 3).norm());
+    const double diagonal = bounding_box(hierarchy.finest().rest).diagonal();
+    EXPECT_NEAR(verify_hierarchy(hierarchy)[0].distance * diagonal, 0.5 - lowest, 0.1 * (0.5 - lowest));
+}
+
+TEST(VerifyHierarchy, MapsOfAFlatSheetAreInverseToEachOther) {
+    // In the plane the map is the identity, and so are its images.
+    const LevelVerification level = verify_hierarchy(decimated(GeneratorShape::sheet).hierarchy)[0];
+    EXPECT_TRUE(level.holds());
+    EXPECT_LT(level.distance, 1e-12);
+    EXPECT_LT(level.largest_return_error, 1e-12);
 }
 
 } // namespace

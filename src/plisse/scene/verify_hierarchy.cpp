@@ -8,8 +8,10 @@
 
 #include <plisse/base/random.h>
 #include <plisse/decimate/level_prolongation.h>
+#include <plisse/geometry/distance.h>
 #include <plisse/model/track.h>
-#include <plisse/spatial/box.h>
+#include <plisse/spatial/box_tree.h>
+#include <plisse/spatial/intersections.h>
 
 namespace plisse {
 
@@ -65,14 +67,20 @@ void measure_weights(const HierarchyLevel& level, const HierarchyLevel& finest, 
     }
 }
 
+/// Where an anchor lies on a surface.
+Vec3 place_on(const Positions& x, const std::vector<Face>& faces, const Anchor& anchor) {
+    const Face& face = faces[static_cast<std::size_t>(anchor.face)];
+    Vec3 place = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+        place += anchor.weights[static_cast<int>(k)] * x.col(face[k]);
+    return place;
+}
+
 void measure_coincidences(const HierarchyLevel& level, LevelVerification& result) {
     std::vector<std::array<double, 3>> images;
     for (const Anchor& anchor : level.to_finest)
         if (anchor.face >= 0) {
-            Vec3 p = Vec3::Zero();
-            for (int k = 0; k < 3; ++k)
-                p += anchor.weights[k] *
-                     level.rest.col(level.faces[static_cast<std::size_t>(anchor.face)][static_cast<std::size_t>(k)]);
+            const Vec3 p = place_on(level.rest, level.faces, anchor);
             images.push_back({p.x(), p.y(), p.z()});
         }
     std::sort(images.begin(), images.end());
@@ -94,16 +102,94 @@ void measure_folds(const HierarchyLevel& level, const HierarchyLevel& finest, Le
     }
 }
 
+/// Images on the level of the finest vertices; their rest positions where they have none.
+Positions images_on(const HierarchyLevel& level, const HierarchyLevel& finest) {
+    Positions images = finest.rest;
+    for (std::size_t v = 0; v < level.to_finest.size(); ++v)
+        if (level.to_finest[v].face >= 0)
+            images.col(static_cast<Eigen::Index>(v)) = place_on(level.rest, level.faces, level.to_finest[v]);
+    return images;
+}
+
+void measure_return(const HierarchyLevel& level, const HierarchyLevel& finest, double diagonal,
+                    LevelVerification& result) {
+    const Positions images = images_on(level, finest);
+    int returned = 0;
+    for (std::size_t v = 0; v < level.on_finest.size(); ++v) {
+        const Anchor& anchor = level.on_finest[v];
+        if (anchor.face < 0) {
+            ++result.missing_ways_back;
+            continue;
+        }
+        result.worst_weight = std::min(result.worst_weight, anchor.weights.minCoeff());
+        result.worst_sum = std::max(result.worst_sum, std::abs(1 - anchor.weights.sum()));
+        const Vec3 back = place_on(images, finest.faces, anchor);
+        const double error = (back - level.rest.col(static_cast<Eigen::Index>(v))).norm() / diagonal;
+        result.mean_return_error += error;
+        result.largest_return_error = std::max(result.largest_return_error, error);
+        ++returned;
+    }
+    result.mean_return_error /= std::max(returned, 1);
+}
+
+/// Nearest places on a surface to points that are known to be near.
+class Surface {
+public:
+    explicit Surface(const HierarchyLevel& level) : level_(level) {
+        std::vector<Box> boxes;
+        for (const Face& face : level.faces) {
+            Box& box = boxes.emplace_back();
+            for (int v : face)
+                box.include(level.rest.col(v));
+        }
+        tree_ = BoxTree(boxes);
+    }
+
+    /// near: a place on the surface.
+    double distance(const Vec3& p, const Vec3& near) const {
+        double squared = (p - near).squaredNorm();
+        Box around;
+        around.include(p);
+        tree_.visit_overlaps(around.inflated(std::sqrt(squared)), [&](int f) {
+            const Face& face = level_.faces[static_cast<std::size_t>(f)];
+            Stencil stencil;
+            stencil << p, level_.rest.col(face[0]), level_.rest.col(face[1]), level_.rest.col(face[2]);
+            squared = std::min(squared, squared_distance_point_triangle(stencil));
+        });
+        return std::sqrt(squared);
+    }
+
+    /// The largest distance of points from the surface; anchors: of each, on it.
+    double largest_distance(const Positions& points, const std::vector<Anchor>& anchors) const {
+        double largest = 0;
+        for (std::size_t v = 0; v < anchors.size(); ++v)
+            if (anchors[v].face >= 0)
+                largest = std::max(largest, distance(points.col(static_cast<Eigen::Index>(v)),
+                                                     place_on(level_.rest, level_.faces, anchors[v])));
+        return largest;
+    }
+
+private:
+    const HierarchyLevel& level_;
+    BoxTree tree_;
+};
+
+int count_intersections(const HierarchyLevel& level) {
+    return static_cast<int>(intersecting_pairs(level.rest, level.faces).size());
+}
+
 } // namespace
 
 bool LevelVerification::holds() const {
     return rest_error <= 1e-10 && rigid_error <= 1e-10 && worst_weight >= 0 && worst_sum <= 1e-12 &&
-           missing_anchors == 0 && coincident_images == 0;
+           missing_anchors == 0 && coincident_images == 0 && missing_ways_back == 0 && new_intersections == 0;
 }
 
 std::vector<LevelVerification> verify_hierarchy(const Hierarchy& hierarchy) {
     const HierarchyLevel& finest = hierarchy.finest();
     const double diagonal = bounding_box(finest.rest).diagonal();
+    const Surface finest_surface(finest);
+    const int intersections = count_intersections(finest);
     std::vector<LevelVerification> results;
     for (int l = 0; l + 1 < hierarchy.level_count(); ++l) {
         const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(l)];
@@ -115,6 +201,11 @@ std::vector<LevelVerification> verify_hierarchy(const Hierarchy& hierarchy) {
         measure_weights(level, finest, result);
         measure_coincidences(level, result);
         measure_folds(level, finest, result);
+        measure_return(level, finest, diagonal, result);
+        result.distance = std::max(Surface(level).largest_distance(finest.rest, level.to_finest),
+                                   finest_surface.largest_distance(level.rest, level.on_finest)) /
+                          diagonal;
+        result.new_intersections = std::max(0, count_intersections(level) - intersections);
     }
     return results;
 }

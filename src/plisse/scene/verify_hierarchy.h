@@ -4,7 +4,8 @@
 
 namespace plisse {
 
-/// How well the map from one level to the finest holds what prolongation promises (DESIGN.md section 5).
+/// How well a level and the map between it and the finest hold what prolongation and contact rely on (DESIGN.md
+/// section 5).
 struct LevelVerification {
     int level = 0;
     double rest_error = 0;     ///< largest |P(rest) - rest| over the diagonal of the finest level
@@ -15,6 +16,15 @@ struct LevelVerification {
     int coincident_images = 0; ///< finest vertices whose image another one has too
     int mapped_faces = 0;      ///< finest faces whose corners all lie in one face of the level ...
     int folded_faces = 0; ///< ... and those of them that are turned over there: 0 for a bijective map of fine faces
+
+    int missing_ways_back = 0; ///< vertices of the level that have no anchor on the finest
+    /// There and back: how far a vertex of the level is from the image of its place on the finest level, over the
+    /// diagonal. The image is taken as straight within a fine face, so on curved surfaces it is off by what a fine face
+    /// bulges.
+    double mean_return_error = 0, largest_return_error = 0;
+    /// Hausdorff's distance of the two surfaces, measured from the vertices of both, over the diagonal.
+    double distance = 0;
+    int new_intersections = 0; ///< intersecting pairs of faces beyond those of the finest level
 
     /// Round-off apart, everything is as it should be. Folded faces do not count: between its corners the image of a
     /// fine face is bent, so a bijective map may turn the straight triangle of a sliver over.
