@@ -1,6 +1,7 @@
 #include "hierarchy_command.h"
 
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -13,10 +14,16 @@
 #include <plisse/mesh/check_mesh.h>
 #include <plisse/mesh/connectivity.h>
 #include <plisse/mesh/read_mesh.h>
+#include <plisse/model/discretization.h>
+#include <plisse/scene/build_model.h>
+#include <plisse/scene/hierarchy_cache.h>
 #include <plisse/scene/hierarchy_folder.h>
+#include <plisse/scene/read_scene.h>
 #include <plisse/scene/verify_hierarchy.h>
 #include <plisse/scene/whole_file.h>
 
+#include "console.h"
+#include "estimate_table.h"
 #include "exit_status.h"
 
 namespace plisse {
@@ -26,9 +33,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct HierarchyArguments {
-    std::string mesh, folder;
-    int levels = 3, coarsest = 500, threads = 0;
+    std::string input, folder;
+    std::optional<int> levels, coarsest;
+    int threads = 0;
     bool verify = false;
+};
+
+/// A hierarchy with what is known before any run.
+struct Built {
+    DecimationResult decimation;
+    std::vector<MeshAttribute> attributes; ///< of the finest mesh
+    FoldEstimates estimates;
 };
 
 /// Intersections stop a run but not a decimation; everything else that check finds does.
@@ -128,21 +143,58 @@ bool print_verification(const std::vector<LevelVerification>& verifications, con
     return holds;
 }
 
-void build_hierarchy(const HierarchyArguments& arguments) {
-    const TriangleMesh mesh = read_decimatable(arguments.mesh);
-    const ThreadLimit limit(arguments.threads);
+/// Of a mesh alone only the shape is known.
+Built build_from_mesh(const HierarchyArguments& arguments) {
+    TriangleMesh mesh = read_decimatable(arguments.input);
     // Components never merge, so one part is enough.
     const std::vector<int> part(static_cast<std::size_t>(mesh.vertex_count()), 0);
     DecimationOptions options;
-    options.levels = arguments.levels;
-    options.coarsest_vertices = arguments.coarsest;
+    options.levels = arguments.levels.value_or(3);
+    options.coarsest_vertices = arguments.coarsest.value_or(500);
     DecimationResult decimation;
     decimation.hierarchy = decimate({mesh.positions, mesh.faces, part, {}, {}}, options, nullptr, &decimation.summary);
-    const auto& [hierarchy, summary] = decimation;
+    FoldEstimates estimates =
+        estimate_folds(decimation.hierarchy, {"the mesh"}, {{shape_scale(mesh.positions, mesh.faces)}});
+    return {std::move(decimation), std::move(mesh.attributes), std::move(estimates)};
+}
+
+/// As a run of the scene would build it.
+Built build_from_scene(const HierarchyArguments& arguments) {
+    Scene scene = read_scene(arguments.input);
+    scene.hierarchy.levels = arguments.levels.value_or(scene.hierarchy.levels);
+    scene.hierarchy.coarsest_vertices = arguments.coarsest.value_or(scene.hierarchy.coarsest_vertices);
+    Console console(ProgressStyle::plain);
+    const Model model = build_model(scene, console);
+    std::optional<HierarchyCache> cache;
+    if (const auto folder = HierarchyCache::default_folder())
+        cache.emplace(*folder, console);
+    const Discretization discretization(model, model.hierarchy.levels, console, cache ? &*cache : nullptr);
+    std::vector<std::string> names;
+    std::vector<std::vector<FoldScale>> scales;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        names.push_back(model.bodies[b].name);
+        scales.push_back(fold_scales(model, static_cast<int>(b)));
+    }
+    return {discretization.decimation(), model.mesh.attributes,
+            estimate_folds(discretization.hierarchy(), std::move(names), std::move(scales))};
+}
+
+bool is_scene(const std::string& file) {
+    return std::filesystem::path(file).extension() == ".json";
+}
+
+void build_hierarchy(const HierarchyArguments& arguments) {
+    if (arguments.folder.empty() && !is_scene(arguments.input))
+        throw InputError("-o", "the folder for the levels is missing", "give one; only a scene can do without");
+    const ThreadLimit limit(arguments.threads);
+    const Built built = is_scene(arguments.input) ? build_from_scene(arguments) : build_from_mesh(arguments);
+    const auto& [hierarchy, summary] = built.decimation;
     const std::vector<LevelStatistics> statistics = hierarchy_statistics(hierarchy);
 
-    Json json = hierarchy_json(arguments.mesh, statistics, summary);
+    Json json = hierarchy_json(arguments.input, statistics, summary);
+    add_estimates(built.estimates, json);
     print_levels(statistics, summary);
+    fmt::print("{}", estimate_table(built.estimates));
     bool holds = true;
     if (arguments.verify) {
         const std::vector<LevelVerification> verifications = verify_hierarchy(hierarchy);
@@ -150,9 +202,11 @@ void build_hierarchy(const HierarchyArguments& arguments) {
             json["verification"].push_back(verification_json(v));
         holds = print_verification(verifications, summary);
     }
-    std::filesystem::create_directories(arguments.folder);
-    write_hierarchy(arguments.folder, decimation, mesh.attributes);
-    write_file_atomically(std::filesystem::path(arguments.folder) / "hierarchy.json", json.dump(2) + "\n");
+    if (!arguments.folder.empty()) {
+        std::filesystem::create_directories(arguments.folder);
+        write_hierarchy(arguments.folder, built.decimation, built.attributes);
+        write_file_atomically(std::filesystem::path(arguments.folder) / "hierarchy.json", json.dump(2) + "\n");
+    }
     if (!holds)
         throw ExitStatus{ExitCode::failed};
 }
@@ -160,12 +214,19 @@ void build_hierarchy(const HierarchyArguments& arguments) {
 } // namespace
 
 void add_hierarchy_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("hierarchy", "Decimates a mesh into nested levels");
+    CLI::App* command =
+        app.add_subcommand("hierarchy", "Decimates a mesh or a scene into nested levels, and says how coarse is sound");
     auto arguments = std::make_shared<HierarchyArguments>();
-    command->add_option("MESH", arguments->mesh, "OBJ, PLY, STL or OFF file")->required();
-    command->add_option("-o,--output", arguments->folder, "folder for the levels and the map")->required();
-    command->add_option("--levels", arguments->levels, "meshes in all, the input included")->check(CLI::Range(1, 20));
-    command->add_option("--coarsest", arguments->coarsest, "vertices of level 0")->check(CLI::Range(4, 1 << 30));
+    command
+        ->add_option(
+            "MESH", arguments->input,
+            "OBJ, PLY, STL or OFF file, or a scene (JSON), whose bodies and obstacles are decimated as in a run")
+        ->required();
+    command->add_option("-o,--output", arguments->folder, "folder for the levels and the map; a scene needs none");
+    command->add_option("--levels", arguments->levels, "meshes in all, the input included (3, or the scene's)")
+        ->check(CLI::Range(1, 20));
+    command->add_option("--coarsest", arguments->coarsest, "vertices of level 0 (500, or the scene's)")
+        ->check(CLI::Range(4, 1 << 30));
     command->add_option("--threads", arguments->threads, "threads; 0: one a processor")->check(CLI::Range(0, 1024));
     command->add_flag("--verify", arguments->verify,
                       "measures rest-shape recovery, rigid motions and the map's bijectivity");

@@ -42,14 +42,16 @@ std::optional<std::pair<int, int>> parse_size(const std::string& text) {
 }
 
 Coloring parse_coloring(const std::string& text) {
-    constexpr std::array<std::pair<const char*, Coloring>, 4> names = {{{"stretch", Coloring::stretch},
+    constexpr std::array<std::pair<const char*, Coloring>, 5> names = {{{"stretch", Coloring::stretch},
                                                                         {"curvature", Coloring::curvature},
+                                                                        {"coarseness", Coloring::coarseness},
                                                                         {"body", Coloring::body},
                                                                         {"none", Coloring::none}}};
     for (const auto& [name, coloring] : names)
         if (text == name)
             return coloring;
-    throw InputError("--color", fmt::format("'{}' is not a colouring", text), "give stretch, curvature, body or none");
+    throw InputError("--color", fmt::format("'{}' is not a colouring", text),
+                     "give stretch, curvature, coarseness, body or none");
 }
 
 DrawOptions draw_options(const RenderArguments& arguments) {
@@ -130,7 +132,8 @@ void add_render_command(CLI::App& app) {
                         "AZIMUTH,ELEVATION[,ZOOM] in degrees; 0,0 looks from +z, 90,0 from +x (35,18)");
     command->add_option("--size", arguments->size,
                         "WIDTHxHEIGHT in pixels, of each picture (960x640; 640x480 on a sheet)");
-    command->add_option("--color", arguments->color, "stretch, curvature, body or none (body)");
+    command->add_option("--color", arguments->color,
+                        "stretch, curvature, coarseness (above 1: the mesh is too coarse there), body or none (body)");
     command->add_flag("--edges", arguments->edges, "Draw the mesh's edges");
     command->add_flag("--sheet", arguments->sheet, "The preview, each level and the final state on one sheet");
     command->callback([arguments] { render(*arguments); });

@@ -38,6 +38,15 @@ Scalars stretch_scalars(const BodyMesh& surface, const Subject& subject, const T
     return scalars;
 }
 
+/// As saved with the frame. The range is the same for all pictures, with 1 in its middle.
+Scalars coarseness_scalars(const BodyMesh& surface, const std::filesystem::path& file) {
+    for (const MeshAttribute& attribute : surface.mesh.attributes)
+        if (attribute.name == "coarseness" && attribute.domain == MeshAttribute::Domain::vertex && attribute.width == 1)
+            return {"coarseness, 1: limit", MeshAttribute::Domain::vertex, attribute.values, 0, 2};
+    throw InputError(file.string(), "it has no vertex property \"coarseness\"",
+                     "give a frame or the folder of a run, or another --color");
+}
+
 /// The mesh at rest that belongs to a frame, where the run has saved it.
 std::optional<TriangleMesh> rest_of(const SavedRun& run, const SavedFrame& frame, const TriangleMesh& mesh) {
     const std::filesystem::path file = run.rest_file(frame.level);
@@ -132,6 +141,8 @@ Portrait portrait_of_mesh(const std::filesystem::path& file, Coloring coloring) 
         portrait.body_count = std::max(portrait.body_count, body + 1);
     if (coloring == Coloring::curvature)
         portrait.scalars = curvature_scalars(portrait.surface, portrait.subject());
+    if (coloring == Coloring::coarseness)
+        portrait.scalars = coarseness_scalars(portrait.surface, file);
     return portrait;
 }
 
@@ -144,6 +155,8 @@ Portrait portrait_of_frame(const SavedRun& run, const SavedFrame& frame, Colorin
         portrait.scalars = stretch_scalars(portrait.surface, portrait.subject(), *rest);
     else if (coloring == Coloring::stretch || coloring == Coloring::curvature)
         portrait.scalars = curvature_scalars(portrait.surface, portrait.subject());
+    else if (coloring == Coloring::coarseness)
+        portrait.scalars = coarseness_scalars(portrait.surface, frame.file);
     return portrait;
 }
 

@@ -8,7 +8,7 @@
 
 namespace plisse {
 
-enum class Coloring { none, body, stretch, curvature };
+enum class Coloring { none, body, stretch, curvature, coarseness };
 
 /// A mesh ready to be drawn: kept together because a picture refers to its parts.
 struct Portrait {

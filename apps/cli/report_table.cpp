@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,23 @@ std::string level_rows(const RunReport& report) {
         text += fmt::format("{:>5} {:>9} {:>9} {:>6} {:>10} {:>11} {:>8} {:>10.4g} {:>9.2g} {:>16}\n", l.level,
                             l.vertices, l.faces, l.steps, l.newton_iterations, l.equilibrium ? "yes" : "no",
                             millimetres(l.min_gap), l.max_stretch, l.residual, distance_in_words(l.to_final));
+    return text;
+}
+
+/// Where each level was too coarse for the shape it took.
+std::string coarse_rows(const RunReport& report) {
+    std::string text = "\n";
+    for (const LevelReport& l : report.levels) {
+        const TooCoarse& found = l.too_coarse;
+        const double degrees = found.turn * 180 / std::numbers::pi;
+        if (found.worst > 1)
+            text += fmt::format("level {}: {:.2g} % of the area too coarse, worst near ({:.4g}, {:.4g}, {:.4g}): turns "
+                                "of {:.0f} degrees over edges of {} mm\n",
+                                l.level, 100 * found.share, found.place.x(), found.place.y(), found.place.z(), degrees,
+                                millimetres(found.edge));
+        else
+            text += fmt::format("level {}: fine enough, turns of up to {:.0f} degrees an edge\n", l.level, degrees);
+    }
     return text;
 }
 
@@ -128,7 +146,8 @@ StoredReport read_report(const std::filesystem::path& run_folder) {
 
 std::string report_table(const StoredReport& stored) {
     const RunReport& report = stored.report;
-    return headline(stored) + level_rows(report) + second_rows(report) + refinement_rows(report) + script_rows(report);
+    return headline(stored) + level_rows(report) + coarse_rows(report) + second_rows(report) + refinement_rows(report) +
+           script_rows(report);
 }
 
 std::string comparison_table(const StoredReport& a, const std::string& name_a, const StoredReport& b,

@@ -151,6 +151,49 @@ TEST_F(Cli, ReportsRunsAloneAndSideBySide) {
     expect_unusable({"report", at("nothing")}, "nothing");
 }
 
+TEST_F(Cli, SaysWhereALevelIsTooCoarseAndShowsIt) {
+    write("scene.json", hung_sheet(few_steps));
+    ASSERT_EQ(run({"run", at("scene.json"), "-o", at("out"), "--quiet", "--method", "progressive"}).code, 0);
+    const std::string table = run({"report", at("out")}).out;
+    for (const std::string level : {"level 0: ", "level 1: "})
+        EXPECT_TRUE(std::regex_search(
+            table, std::regex(level + "([0-9.e+-]+ % of the area too coarse, worst near|fine enough)")))
+            << table;
+    const Json found = json_of("out/report.json")["levels"][0]["too_coarse"];
+    EXPECT_GT(found["worst"], 0);
+    EXPECT_EQ(found["place"].size(), 3U);
+    for (const std::vector<std::string>& what :
+         {std::vector<std::string>{at("out"), "--sheet"}, {at("out"), "--level", "0"}, {at("out/final.ply")}}) {
+        std::vector<std::string> arguments{"render", "-o", at("picture.png"), "--color", "coarseness"};
+        arguments.insert(arguments.end(), what.begin(), what.end());
+        EXPECT_EQ(run(arguments).code, 0) << what.back();
+    }
+    write("square.obj", square_obj);
+    expect_unusable({"render", at("square.obj"), "-o", at("x.png"), "--color", "coarseness"}, "square.obj");
+}
+
+TEST_F(Cli, HierarchyEstimatesHowCoarseIsSound) {
+    write("scene.json", hung_sheet(few_steps));
+    const Outcome outcome = run({"hierarchy", at("scene.json")});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("sheet: folds under its weight"), std::string::npos) << outcome.out;
+    ASSERT_EQ(run({"hierarchy", at("scene.json"), "-o", at("h"), "--levels", "3", "--coarsest", "12"}).code, 0);
+    const Json json = json_of("h/hierarchy.json");
+    ASSERT_EQ(json["levels"].size(), 3U);
+    EXPECT_GT(json["levels"][0]["edge"]["median"], json["levels"][1]["edge"]["median"]);
+    EXPECT_GT(json["levels"][0]["estimate"]["turn"], json["levels"][2]["estimate"]["turn"]);
+    EXPECT_EQ(json["levels"][0]["estimate"]["verdict"], "too coarse");
+    EXPECT_EQ(json["estimate"]["bodies"][0]["folds"][0]["cause"], "folds under its weight");
+    EXPECT_GT(json["estimate"]["recommended_coarsest_vertices"], 0);
+    EXPECT_TRUE(fs::exists(at("h/level-2.ply")));
+
+    write("square.obj", square_obj);
+    const Outcome mesh = run({"hierarchy", at("square.obj"), "-o", at("m"), "--levels", "1"});
+    EXPECT_EQ(mesh.code, 0) << mesh.err;
+    EXPECT_NE(mesh.out.find("sound"), std::string::npos) << mesh.out;
+    expect_unusable({"hierarchy", at("square.obj")}, "-o");
+}
+
 class Resume : public Cli {
 protected:
     /// Begins a run, ends it by a signal once it has saved a checkpoint, and returns what it ended with.

@@ -111,9 +111,12 @@ TEST(Run, ResumesToTheSameBits) {
         const RunResult resumed = run_to_end(model, rest, options);
         EXPECT_EQ(resumed.report.status, RunStatus::converged);
         EXPECT_EQ(resumed.positions, uninterrupted.positions);
-        for (std::size_t level = 0; level < resumed.report.levels.size(); ++level)
-            EXPECT_EQ(resumed.report.levels[level].to_final.largest,
-                      uninterrupted.report.levels[level].to_final.largest);
+        for (std::size_t level = 0; level < resumed.report.levels.size(); ++level) {
+            const LevelReport &again = resumed.report.levels[level], &once = uninterrupted.report.levels[level];
+            EXPECT_EQ(again.to_final.largest, once.to_final.largest);
+            EXPECT_EQ(again.too_coarse.share, once.too_coarse.share);
+            EXPECT_EQ(again.too_coarse.place, once.too_coarse.place);
+        }
     }
 }
 

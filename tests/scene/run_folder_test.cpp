@@ -38,6 +38,7 @@ RunReport sample_report() {
     level.min_gap = infinity;
     level.max_stretch = 1.1;
     level.to_final = {1e-3 / 3, infinity};
+    level.too_coarse = {1.0 / 7, 2.5, 0.75, 1e-2 / 3, Vec3(0, 1.0 / 3, -2)};
     level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
     level.reactions = {{"left", Vec3(0, 0.1 / 7, 0), Vec3::Ones()}};
     level.seconds[Phase::ccd] = 0.1 + 0.2;
@@ -95,7 +96,7 @@ TEST(ReportJson, HasTheContractsKeysAndReadsBackToTheBit) {
                             "intersecting_pairs", "levels", "refinements", "reactions", "lagging"})
         EXPECT_TRUE(json.contains(key)) << key;
     for (const char* key : {"level", "vertices", "faces", "steps", "newton_iterations", "equilibrium", "min_gap",
-                            "max_stretch", "residual", "to_final", "energy", "reactions", "seconds"})
+                            "max_stretch", "residual", "to_final", "too_coarse", "energy", "reactions", "seconds"})
         EXPECT_TRUE(json["levels"][0].contains(key)) << key;
     for (const char* key :
          {"total", "elastic", "contact", "linear_solve", "line_search", "broad_phase", "ccd", "other"})
@@ -256,7 +257,12 @@ TEST_F(RunFolderTest, WritesFramesAndTheFinalStateInTheModelsOrder) {
         return attribute.name == "body" && attribute.values == std::vector<double>{0, 0, 1};
     };
     EXPECT_EQ(std::count_if(final_mesh.attributes.begin(), final_mesh.attributes.end(), has_body), 1);
-    EXPECT_EQ(final_mesh.attributes.size(), model_.mesh.attributes.size() + 1);
+    const auto has_coarseness = [&](const MeshAttribute& attribute) {
+        const VecX values = coarseness(model_.mesh.positions, last, model_.mesh.faces);
+        return attribute.name == "coarseness" && attribute.values == std::vector<double>(values.begin(), values.end());
+    };
+    EXPECT_EQ(std::count_if(final_mesh.attributes.begin(), final_mesh.attributes.end(), has_coarseness), 1);
+    EXPECT_EQ(final_mesh.attributes.size(), model_.mesh.attributes.size() + 2);
     EXPECT_TRUE(fs::exists(output() / "frames/0/000000.ply"));
     const Json line = Json::parse(read_text(output() / "frames/index.jsonl"));
     EXPECT_EQ(line["file"], "frames/0/000000.ply");

@@ -343,6 +343,8 @@ void LevelStepper::measure() {
     report.residual = problem_.residual(x_);
     report.min_gap = problem_.min_gap(x_);
     report.max_stretch = problem_.max_stretch(x_);
+    report.too_coarse =
+        find_too_coarse(discretization_.mesh(level_).rest, positions(), discretization_.layout(level_).body_faces);
     PhaseTimes& now = log_.context().times;
     report.total_seconds += watch_.seconds();
     watch_ = Stopwatch();

@@ -7,6 +7,7 @@
 #include <plisse/base/context.h>
 #include <plisse/contact/friction.h>
 #include <plisse/decimate/hierarchy.h>
+#include <plisse/drive/coarseness.h>
 #include <plisse/drive/preview_distance.h>
 #include <plisse/solve/objective.h>
 
@@ -56,6 +57,7 @@ struct LevelReport {
     double max_stretch = 1;   ///< largest principal stretch of the level's own faces
     double residual = 0;      ///< largest nodal force of the total over the largest of any one term
     PreviewDistance to_final; ///< of the level's last state, once there is a finest result
+    TooCoarse too_coarse;     ///< for the shape of the bodies
     EnergyParts energy;
     std::vector<Reaction> reactions; ///< of every handle and obstacle, at the level's last state
     PhaseTimes seconds;

@@ -53,8 +53,8 @@ std::vector<int> label_handles(const Model& model, std::vector<std::vector<int>>
 /// presses slips out.
 constexpr int least_decimated_obstacle = 300;
 
-Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::vector<int>& labels, int level_count,
-                          Context& context, HierarchyStore* store) {
+DecimationResult build_hierarchy(const Model& model, const Positions& rest, const std::vector<int>& labels,
+                                 int level_count, Context& context, HierarchyStore* store) {
     const std::vector<int> part = model.vertex_parts();
     std::vector<std::uint8_t> frozen(at(model.part_count()), 0);
     DecimationOptions options;
@@ -67,14 +67,15 @@ Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::
         frozen[model.bodies.size() + o] = !obstacle.progressive || obstacle.vertices.size() < least_decimated_obstacle;
     }
     // Without coarser levels there is nothing to keep.
-    auto [hierarchy, summary] = decimate_once({rest, model.mesh.faces, part, labels, frozen}, options, context,
-                                              level_count > 1 ? store : nullptr);
+    DecimationResult result = decimate_once({rest, model.mesh.faces, part, labels, frozen}, options, context,
+                                            level_count > 1 ? store : nullptr);
+    const DecimationSummary& summary = result.summary;
     if (summary.ran_dry)
         context.on_message(
             fmt::format("the coarsest level has {} vertices, not the {} asked for: no further edge can be "
                         "collapsed without harm to the shape",
                         summary.reached_vertices.front(), summary.wanted_vertices.front()));
-    return std::move(hierarchy);
+    return result;
 }
 
 } // namespace
@@ -82,8 +83,8 @@ Hierarchy build_hierarchy(const Model& model, const Positions& rest, const std::
 Discretization::Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store)
     : model_(model) {
     const std::vector<int> labels = label_handles(model_, handles_of_label_);
-    hierarchy_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context, store);
-    layouts_.resize(hierarchy_.levels.size());
+    decimation_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context, store);
+    layouts_.resize(hierarchy().levels.size());
     for (int level = 0; level <= finest(); ++level)
         lay_out(level);
 }
@@ -106,7 +107,7 @@ void Discretization::lay_out(int level) {
 
     using Key = std::tuple<int, int, double, double, double>;
     std::map<Key, int> finest_at;
-    const HierarchyLevel& fine = hierarchy_.finest();
+    const HierarchyLevel& fine = hierarchy().finest();
     for (int v = 0; v < fine.rest.cols(); ++v)
         if (fine.label[at(v)] >= 0)
             finest_at.try_emplace(
@@ -180,7 +181,7 @@ Positions Discretization::start(int level) const {
 Positions Discretization::restricted_start(int level) const {
     const HierarchyLevel& coarse = mesh(level);
     const Positions target = start(finest());
-    const Prolongation prolongation = prolongation_to_finest(hierarchy_, level, ProlongationOperator::shell);
+    const Prolongation prolongation = prolongation_to_finest(hierarchy(), level, ProlongationOperator::shell);
     std::vector<std::uint8_t> fixed = layout(level).prescribed;
     Positions x = coarse.rest;
     for (std::size_t v = 0; v < coarse.label.size(); ++v)

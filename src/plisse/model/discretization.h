@@ -27,10 +27,11 @@ public:
     Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store = nullptr);
 
     const Model& model() const { return model_; }
-    const Hierarchy& hierarchy() const { return hierarchy_; }
-    const HierarchyLevel& mesh(int level) const { return hierarchy_.levels[static_cast<std::size_t>(level)]; }
+    const DecimationResult& decimation() const { return decimation_; }
+    const Hierarchy& hierarchy() const { return decimation_.hierarchy; }
+    const HierarchyLevel& mesh(int level) const { return hierarchy().levels[static_cast<std::size_t>(level)]; }
     const LevelLayout& layout(int level) const { return layouts_[static_cast<std::size_t>(level)]; }
-    int finest() const { return hierarchy_.level_count() - 1; }
+    int finest() const { return hierarchy().level_count() - 1; }
 
     /// Where the script wants the prescribed unknowns of a level at time t (other entries are the rest positions).
     Positions script(int level, double t) const;
@@ -48,7 +49,7 @@ private:
     Positions restricted_start(int level) const;
 
     Model model_;
-    Hierarchy hierarchy_;
+    DecimationResult decimation_;
     std::vector<LevelLayout> layouts_;
     std::vector<std::vector<int>> handles_of_label_;
     std::vector<int> no_handles_;

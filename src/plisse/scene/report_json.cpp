@@ -69,6 +69,12 @@ Json level_json(const LevelReport& level) {
             {"residual", finite_or_null(level.residual)},
             {"to_final",
              {{"mean", finite_or_null(level.to_final.mean)}, {"largest", finite_or_null(level.to_final.largest)}}},
+            {"too_coarse",
+             {{"share", level.too_coarse.share},
+              {"worst", finite_or_null(level.too_coarse.worst)},
+              {"turn", finite_or_null(level.too_coarse.turn)},
+              {"edge", level.too_coarse.edge},
+              {"place", vector_json(level.too_coarse.place)}}},
             {"energy",
              {{"elastic", level.energy.elastic},
               {"strain_limit", level.energy.strain_limit},
@@ -93,6 +99,10 @@ LevelReport level_from(const Json& json) {
     level.residual = number_or_infinity(json.at("residual"));
     level.to_final = {number_or_infinity(json.at("to_final").at("mean")),
                       number_or_infinity(json.at("to_final").at("largest"))};
+    if (const auto found = json.find("too_coarse"); found != json.end()) // reports before 0023 have none
+        level.too_coarse = {found->at("share").get<double>(), number_or_infinity(found->at("worst")),
+                            number_or_infinity(found->at("turn")), found->at("edge").get<double>(),
+                            vector_from(found->at("place"))};
     const Json& energy = json.at("energy");
     level.energy.elastic = number_or_infinity(energy.at("elastic"));
     level.energy.strain_limit = number_or_infinity(energy.at("strain_limit"));

@@ -17,6 +17,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+constexpr const char* coarseness_name = "coarseness";
+
 constexpr std::array written_entries = {"scene.json", "meshes",      "levels",     "frames",
                                         "final.ply",  "report.json", "checkpoint", "log.jsonl"};
 
@@ -34,9 +36,10 @@ std::string frame_file(int level, int number) {
 RunFolder::RunFolder(fs::path folder, const Scene& scene, const Model& model, const RunFolderOptions& options)
     : folder_(std::move(folder)), options_(options), attributes_(model.mesh.attributes),
       checkpoints_(folder_ / "checkpoint") {
-    // The property "body" of frames is our own; a mesh that was once a frame brings an older one.
+    // These properties of frames are our own; a mesh that was once a frame brings older ones.
     std::erase_if(attributes_, [](const MeshAttribute& attribute) {
-        return attribute.name == "body" && attribute.domain == MeshAttribute::Domain::face;
+        return (attribute.name == "body" && attribute.domain == MeshAttribute::Domain::face) ||
+               (attribute.name == coarseness_name && attribute.domain == MeshAttribute::Domain::vertex);
     });
     try {
         open(scene);
@@ -104,6 +107,7 @@ void RunFolder::on_hierarchy(const Hierarchy& hierarchy) {
     levels_.clear();
     for (const HierarchyLevel& level : hierarchy.levels) {
         Surface& surface = levels_.emplace_back();
+        surface.rest = level.rest;
         surface.mesh.positions = level.rest;
         surface.mesh.faces = level.faces;
         for (const Face& face : level.faces)
@@ -113,8 +117,11 @@ void RunFolder::on_hierarchy(const Hierarchy& hierarchy) {
     for (std::size_t level = 0; level < levels_.size(); ++level)
         levels_[level].mesh.attributes = attributes_on(hierarchy, static_cast<int>(level), attributes_);
     fs::create_directories(folder_ / "levels");
-    for (std::size_t level = 0; level < levels_.size(); ++level)
-        write_ply(folder_ / fmt::format("levels/{}.ply", level), levels_[level].mesh, levels_[level].face_body);
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+        Surface& surface = levels_[level];
+        write_ply(folder_ / fmt::format("levels/{}.ply", level), surface.mesh, surface.face_body);
+        surface.mesh.attributes.push_back({coarseness_name, MeshAttribute::Domain::vertex, 1, {}});
+    }
 }
 
 void RunFolder::on_iteration(const IterationRecord& record) {
@@ -170,6 +177,8 @@ void RunFolder::write_final(int level, const Positions& positions) {
 void RunFolder::write_surface(const fs::path& path, int level, const Positions& positions) {
     Surface& surface = levels_.at(static_cast<std::size_t>(level));
     surface.mesh.positions = positions;
+    const VecX values = coarseness(surface.rest, positions, surface.mesh.faces);
+    surface.mesh.attributes.back().values.assign(values.begin(), values.end());
     write_ply(path, surface.mesh, surface.face_body);
 }
 

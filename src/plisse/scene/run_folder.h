@@ -22,7 +22,7 @@ struct RunFolderOptions {
 
 /// The output folder of a run, as CONTRACT.md lays it out:
 ///   scene.json, meshes/      the scene as understood and copies of its meshes
-///   frames/L/NNNNNN.ply      frames of level L; frames/index.jsonl lists them
+///   frames/L/NNNNNN.ply      frames of level L, with the vertex property "coarseness"; frames/index.jsonl lists them
 ///   final.ply, report.json, log.jsonl, checkpoint/
 /// Files that grow are cut back to the checkpoint on resuming; all others are replaced in one step, so a process killed
 /// at any moment leaves a folder that can be resumed.
@@ -54,7 +54,8 @@ public:
 
 private:
     struct Surface {
-        TriangleMesh mesh;
+        Positions rest;
+        TriangleMesh mesh; ///< its last attribute is the coarseness
         std::vector<int> face_body;
     };
     void open(const Scene& scene);
