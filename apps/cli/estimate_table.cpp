@@ -66,8 +66,8 @@ void add_estimates(const FoldEstimates& estimates, Json& json) {
         const LevelEstimate& e = estimates.levels[l];
         json["levels"][l]["edge"] = {{"median", e.median_edge}, {"p95", e.long_edge}};
         json["levels"][l]["estimate"] = {{"verdict", verdict_name(e.verdict)},
-                                         {"turn", e.turn},
-                                         {"of_limit", e.turn / most_turn},
+                                         {"turn", finite_or_null(e.turn)},
+                                         {"of_limit", finite_or_null(e.turn / most_turn)},
                                          {"body", estimates.names[static_cast<std::size_t>(e.part)]},
                                          {"cause", describe(e.governing.cause)}};
     }

@@ -49,19 +49,26 @@ std::string level_rows(const RunReport& report) {
     return text;
 }
 
-/// Where each level was too coarse for the shape it took.
+double degrees(double radians) {
+    return radians * 180 / std::numbers::pi;
+}
+
+/// Where each level was too coarse for the shape it took. One that is much too coarse may not fold at all and look
+/// fine, so the estimate is told too.
 std::string coarse_rows(const RunReport& report) {
     std::string text = "\n";
     for (const LevelReport& l : report.levels) {
         const TooCoarse& found = l.too_coarse;
-        const double degrees = found.turn * 180 / std::numbers::pi;
         if (found.worst > 1)
             text += fmt::format("level {}: {:.2g} % of the area too coarse, worst near ({:.4g}, {:.4g}, {:.4g}): turns "
-                                "of {:.0f} degrees over edges of {} mm\n",
-                                l.level, 100 * found.share, found.place.x(), found.place.y(), found.place.z(), degrees,
-                                millimetres(found.edge));
+                                "of {:.0f} degrees over edges of {} mm",
+                                l.level, 100 * found.share, found.place.x(), found.place.y(), found.place.z(),
+                                degrees(found.turn), millimetres(found.edge));
         else
-            text += fmt::format("level {}: fine enough, turns of up to {:.0f} degrees an edge\n", l.level, degrees);
+            text += fmt::format("level {}: fine enough for its shape, turns of up to {:.0f} degrees an edge", l.level,
+                                degrees(found.turn));
+        text += fmt::format("; estimate: {} ({:.0f} degrees)\n", verdict_name(verdict_on(l.estimated_turn)),
+                            degrees(l.estimated_turn));
     }
     return text;
 }

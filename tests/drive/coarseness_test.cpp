@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -55,7 +56,7 @@ TEST(Coarseness, OfOneHingeIsItsTurnFromRest) {
         for (double turn : {0.2, -1.0, 3.0}) {
             const VecX values = coarseness(folded(rest, start), folded(rest, start + turn), faces);
             for (int v = 0; v < 4; ++v)
-                EXPECT_NEAR(values[v], std::abs(std::remainder(turn, 2 * M_PI)) / most_turn, 1e-12);
+                EXPECT_NEAR(values[v], std::abs(std::remainder(turn, 2 * std::numbers::pi)) / most_turn, 1e-12);
         }
 }
 
@@ -65,10 +66,12 @@ TEST(Coarseness, OfAFoldedStripIsHighestAtTheFold) {
     const VecX values = coarseness(mesh.positions, x, mesh.faces);
     for (int v = 0; v < x.cols(); ++v) {
         const double away = std::abs(mesh.positions(0, v));
-        if (away > 0.15) // further than a face
+        if (away > 0.15) { // further than a face
             EXPECT_LT(values[v], 1e-12);
-        if (away < 1e-9)
+        }
+        if (away < 1e-9) {
             EXPECT_GT(values[v], 1);
+        }
     }
     const TooCoarse found = find_too_coarse(mesh.positions, x, mesh.faces);
     EXPECT_NEAR(found.place.x(), 0, 1e-9);

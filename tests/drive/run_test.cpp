@@ -116,6 +116,7 @@ TEST(Run, ResumesToTheSameBits) {
             EXPECT_EQ(again.to_final.largest, once.to_final.largest);
             EXPECT_EQ(again.too_coarse.share, once.too_coarse.share);
             EXPECT_EQ(again.too_coarse.place, once.too_coarse.place);
+            EXPECT_EQ(again.estimated_turn, once.estimated_turn);
         }
     }
 }

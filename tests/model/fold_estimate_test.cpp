@@ -78,7 +78,7 @@ TEST(FoldLengths, AreTheirClosedForms) {
     EXPECT_NEAR(ridge_radius(1e-3, 0.1), std::pow(0.1, 2.0 / 3) * 0.1, 1e-14);
 }
 
-TEST(FoldLengths, TheRadiusOfAShapeIsThatOfItsCurvatureAcrossEdges) {
+TEST(FoldLengths, TheRadiusOfAShapeIsThatOfItsMeanCurvature) {
     const TriangleMesh flat = sheet_mesh(1, 0.1), ball = sphere_mesh(0.2, 0.03);
     EXPECT_TRUE(std::isinf(curvature_radius(flat.positions, flat.faces)));
     EXPECT_NEAR(curvature_radius(ball.positions, ball.faces), 0.2, 0.01);
@@ -88,7 +88,6 @@ TEST(FoldLengths, TheRadiusOfAShapeIsThatOfItsCurvatureAcrossEdges) {
     options.height = 0.4;
     options.edge_length = 0.02;
     const TriangleMesh tube = generate_mesh(options);
-    // Half of the curvature, over all directions.
     EXPECT_NEAR(curvature_radius(tube.positions, tube.faces), 0.2, 0.02);
 }
 
@@ -106,6 +105,12 @@ TEST(FoldScales, WeightFoldsAsHangingCloth) {
     EXPECT_EQ(folds.cause, FoldCause::weight);
     EXPECT_NEAR(folds.length, 2 * std::sqrt(pi) * std::pow(1.0 / 12000 / 20, 0.25), 1e-12);
     EXPECT_NEAR(folds.radius, folds.length / (2 * pi * mean_share), 1e-12);
+}
+
+TEST(FoldScales, ClothWithoutBendingFoldsEverSmaller) {
+    Material limp = material;
+    limp.bending_scale = 0;
+    EXPECT_EQ(fold_scales(sheet_model(0.2, limp, Vec3(0, -10, 0)), 0).front().radius, 0);
 }
 
 TEST(FoldScales, WeightBendsAStiffPlateAsACantilever) {
@@ -164,7 +169,7 @@ TEST(FoldScales, ACurvedShellFoldsInRidgesWhenItIsCrushed) {
 }
 
 TEST(FoldScales, PressureHoldsAShellTautOrCollapsesIt) {
-    const Material rubber{1100, 1e6, 0.45, 1e-3, 1}; // the classical pressure of a sphere: 120 Pa
+    const Material rubber{1100, 1e6, 0.45, 1e-3, 1}; // E (t/R)^2 = 100 Pa
     Model model = shell_model(GeneratorShape::sphere, rubber);
     Obstacle plate;
     append_part(model, sheet_mesh(0.1, 0.05), Vec3(0, 0.2, 0), plate.vertices, plate.faces);
@@ -182,7 +187,7 @@ TEST(FoldScales, PressureHoldsAShellTautOrCollapsesIt) {
 }
 
 TEST(LevelEstimates, AHungSheetIsTooCoarseUntilItsEdgesAreShort) {
-    Material felt{200, 2e6, 0.3, 2e-3, 1};
+    const Material felt{200, 2e6, 0.3, 3e-3, 1};
     Model model = sheet_model(0.03, felt, Vec3(0, -9.81, 0));
     const FoldScale folds = fold_scales(model, 0).front();
     ASSERT_EQ(folds.cause, FoldCause::weight);
@@ -204,7 +209,7 @@ TEST(LevelEstimates, AHungSheetIsTooCoarseUntilItsEdgesAreShort) {
 }
 
 TEST(LevelEstimates, EnoughVerticesMakeALevelJustFineEnough) {
-    Model model = sheet_model(0.02, material);
+    Model model = sheet_model(0.05, material);
     Context context;
     const Discretization discretization(model, 1, context);
     const HierarchyLevel& finest = discretization.mesh(0);

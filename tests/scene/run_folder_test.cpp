@@ -39,6 +39,7 @@ RunReport sample_report() {
     level.max_stretch = 1.1;
     level.to_final = {1e-3 / 3, infinity};
     level.too_coarse = {1.0 / 7, 2.5, 0.75, 1e-2 / 3, Vec3(0, 1.0 / 3, -2)};
+    level.estimated_turn = 0.1 / 3;
     level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
     level.reactions = {{"left", Vec3(0, 0.1 / 7, 0), Vec3::Ones()}};
     level.seconds[Phase::ccd] = 0.1 + 0.2;

@@ -53,11 +53,12 @@ struct Reaction {
 struct LevelReport {
     int level = 0, vertices = 0, faces = 0, steps = 0, newton_iterations = 0;
     bool equilibrium = false;
-    double min_gap = 0;       ///< m; infinity where no pair is in contact range
-    double max_stretch = 1;   ///< largest principal stretch of the level's own faces
-    double residual = 0;      ///< largest nodal force of the total over the largest of any one term
-    PreviewDistance to_final; ///< of the level's last state, once there is a finest result
-    TooCoarse too_coarse;     ///< for the shape of the bodies
+    double min_gap = 0;        ///< m; infinity where no pair is in contact range
+    double max_stretch = 1;    ///< largest principal stretch of the level's own faces
+    double residual = 0;       ///< largest nodal force of the total over the largest of any one term
+    PreviewDistance to_final;  ///< of the level's last state, once there is a finest result
+    TooCoarse too_coarse;      ///< for the shape of the bodies
+    double estimated_turn = 0; ///< rad, from face to face: what was to be expected before the run
     EnergyParts energy;
     std::vector<Reaction> reactions; ///< of every handle and obstacle, at the level's last state
     PhaseTimes seconds;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <plisse/model/fold_estimate.h>
 #include <plisse/spatial/intersections.h>
 
 namespace plisse {
@@ -20,6 +21,7 @@ LevelReport& RunLog::level_report(int level) {
     fresh.level = level;
     fresh.vertices = static_cast<int>(discretization_.mesh(level).rest.cols());
     fresh.faces = static_cast<int>(discretization_.mesh(level).faces.size());
+    fresh.estimated_turn = estimate_level(discretization_.mesh(level), governing_scales(discretization_.model())).turn;
     levels.push_back(fresh);
     return levels.back();
 }

@@ -21,9 +21,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double mean_share = 0.43;
 /// A rest shape's turn harms less than that of a fold, since prolongation is exact at rest.
 constexpr double shape_share = 1.0 / 3;
-/// Of a thin cylinder under axial load, a sphere under pressure has twice that: strain, or pressure over E t / R, times
-/// R / t.
-constexpr double classical_buckling = 0.6;
+/// Strain times R / t at which a thin shell buckles: half of the classical 0.6, as real ones do. Of pressure on a
+/// sphere over E (t / R)^2, half.
+constexpr double shell_buckling = 0.3;
 constexpr int samples = 64; ///< of the timeline
 
 std::size_t at(int index) {
@@ -41,6 +41,10 @@ FoldScale fold_of_wavelength(FoldCause cause, double wavelength, double slope) {
 
 FoldScale fold_of_ridges(FoldCause cause, double radius, double slope) {
     return {cause, radius / (slope * mean_share), radius};
+}
+
+FoldScale scale_of_shape(double radius) {
+    return {FoldCause::shape, radius / shape_share, radius};
 }
 
 double face_area(const Face& face, const Positions& x) {
@@ -89,9 +93,9 @@ double largest_norm(const Track<Value>& track) {
 void add_weight_folds(const Shell& shell, std::vector<FoldScale>& scales) {
     const Material& m = shell.body.material;
     const double weight = m.density * m.thickness * largest_norm(shell.model.gravity);
-    if (!(weight > 0 && shell.rigidity > 0))
+    if (!(weight > 0))
         return;
-    if (shell.curved() && weight * shell.radius < classical_buckling * shell.stiffness * m.thickness / shell.radius)
+    if (shell.curved() && weight * shell.radius < shell_buckling * shell.stiffness * m.thickness / shell.radius)
         return; // it bears its weight by its curvature
     FoldScale folds =
         fold_of_wavelength(FoldCause::weight, wrinkle_length(shell.rigidity, weight * shell.size, shell.size), 1);
@@ -173,16 +177,16 @@ void add_crush_folds(const Shell& shell, const std::vector<HandleStrain>& strain
     const double slenderness = m.thickness / shell.radius;
     const double pressure = shell.body.pressure.at(shell.model.solve.duration);
     const double ridges = ridge_radius(m.thickness, shell.radius);
-    if (-pressure > 2 * classical_buckling * m.youngs_modulus * slenderness * slenderness)
+    if (-pressure > 2 * shell_buckling * m.youngs_modulus * slenderness * slenderness)
         scales.push_back(fold_of_ridges(FoldCause::suction, ridges, 1));
-    if (pressure > classical_buckling * m.youngs_modulus * slenderness * slenderness)
+    if (pressure > shell_buckling * m.youngs_modulus * slenderness * slenderness)
         return; // inflated, it is always in tension
     double strain = 0;
     for (const HandleStrain& s : strains)
         strain = std::max({strain, s.approach, s.shear});
     for (const Obstacle& obstacle : shell.model.obstacles)
         strain = std::max(strain, std::min(1.0, travel(obstacle, shell.model) / shell.size));
-    if (strain > classical_buckling * slenderness)
+    if (strain > shell_buckling * slenderness)
         scales.push_back(fold_of_ridges(FoldCause::crush, ridges, fold_slope(strain)));
 }
 
@@ -201,10 +205,6 @@ std::vector<double> edge_lengths(const HierarchyLevel& level, int part) {
 double quantile(const std::vector<double>& ascending, double share) {
     return ascending.empty() ? 0
                              : ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
-}
-
-Verdict verdict_on(double turn) {
-    return turn <= most_turn / 2 ? Verdict::sound : turn <= most_turn ? Verdict::marginal : Verdict::too_coarse;
 }
 
 } // namespace
@@ -241,26 +241,28 @@ double ridge_radius(double thickness, double curvature_radius) {
 
 double curvature_radius(const Positions& rest, std::span<const Face> faces) {
     const Connectivity mesh(static_cast<int>(rest.cols()), faces);
-    const Hinges hinges = interior_hinges(mesh, faces);
-    double turn = 0, area = 0;
-    for (std::size_t h = 0; h < hinges.vertices.size(); ++h) {
-        const std::array<int, 4>& v = hinges.vertices[h];
-        // Across an edge the curvature is the angle over the distance of the faces' centres, a third of their heights.
-        turn += 1.5 * std::abs(dihedral_angle_at(v, rest)) * (rest.col(v[1]) - rest.col(v[0])).norm();
-        for (int f : hinges.faces[h])
-            area += face_area(faces[at(f)], rest);
+    // Around a vertex angle times length, half of it its own, is the sum of both curvatures times area. Edge by edge
+    // the signs of irregular meshes would count.
+    VecX turns = VecX::Zero(rest.cols());
+    for (const std::array<int, 4>& v : interior_hinges(mesh, faces).vertices) {
+        const double turn = dihedral_angle_at(v, rest) * (rest.col(v[1]) - rest.col(v[0])).norm() / 2;
+        turns[v[0]] += turn;
+        turns[v[1]] += turn;
     }
-    return turn > 1e-9 * std::sqrt(area) ? area / turn : infinity;
+    double area = 0;
+    for (const Face& face : faces)
+        area += face_area(face, rest);
+    const double turn = turns.cwiseAbs().sum();
+    return turn > 1e-9 * std::sqrt(area) ? 2 * area / turn : infinity;
 }
 
 FoldScale shape_scale(const Positions& rest, std::span<const Face> faces) {
-    const double radius = curvature_radius(rest, faces);
-    return {FoldCause::shape, radius / shape_share, radius};
+    return scale_of_shape(curvature_radius(rest, faces));
 }
 
 std::vector<FoldScale> fold_scales(const Model& model, int body) {
     const Shell shell = shell_of(model, body);
-    std::vector<FoldScale> scales{{FoldCause::shape, shell.radius / shape_share, shell.radius}};
+    std::vector<FoldScale> scales{scale_of_shape(shell.radius)};
     add_weight_folds(shell, scales);
     const std::vector<HandleStrain> strains = handle_strains(shell);
     if (shell.curved())
@@ -270,6 +272,13 @@ std::vector<FoldScale> fold_scales(const Model& model, int body) {
             add_handle_folds(shell, strain, scales);
     std::stable_sort(scales.begin(), scales.end(),
                      [](const FoldScale& a, const FoldScale& b) { return a.radius < b.radius; });
+    return scales;
+}
+
+std::vector<FoldScale> governing_scales(const Model& model) {
+    std::vector<FoldScale> scales;
+    for (int body = 0; body < static_cast<int>(model.bodies.size()); ++body)
+        scales.push_back(fold_scales(model, body).front());
     return scales;
 }
 
@@ -283,6 +292,10 @@ const char* verdict_name(Verdict verdict) {
         return "too coarse";
     }
     return "";
+}
+
+Verdict verdict_on(double turn) {
+    return turn <= most_turn / 2 ? Verdict::sound : turn <= most_turn ? Verdict::marginal : Verdict::too_coarse;
 }
 
 LevelEstimate estimate_level(const HierarchyLevel& level, std::span<const FoldScale> scales) {

@@ -48,7 +48,8 @@ double wrinkle_length(double rigidity, double tension, double span);
 /// Radius of the ridges between the facets of a crushed shell: R^(2/3) t^(1/3) (Lobkovsky et al. 1995), m.
 double ridge_radius(double thickness, double curvature_radius);
 
-/// One over the mean curvature of a mesh across its edges, by area, m; infinite where it is flat.
+/// One over the size of the mean curvature, averaged over the area, m: the radius of a sphere, the diameter of a tube;
+/// infinite where all is flat.
 double curvature_radius(const Positions& rest, std::span<const Face> faces);
 
 /// What a shape alone asks for, as the loads below do.
@@ -56,8 +57,13 @@ FoldScale shape_scale(const Positions& rest, std::span<const Face> faces);
 /// The ways in which a body may fold over the timeline, its shape among them, the smallest radius first.
 std::vector<FoldScale> fold_scales(const Model& model, int body);
 
+/// The first of these for each body.
+std::vector<FoldScale> governing_scales(const Model& model);
+
 enum class Verdict { sound, marginal, too_coarse };
 const char* verdict_name(Verdict verdict);
+/// On a turn expected from face to face: marginal above half of most_turn, too coarse above all of it.
+Verdict verdict_on(double turn);
 
 /// A level's edges, and the body for which they are coarsest.
 struct LevelEstimate {

@@ -74,7 +74,8 @@ Json level_json(const LevelReport& level) {
               {"worst", finite_or_null(level.too_coarse.worst)},
               {"turn", finite_or_null(level.too_coarse.turn)},
               {"edge", level.too_coarse.edge},
-              {"place", vector_json(level.too_coarse.place)}}},
+              {"place", vector_json(level.too_coarse.place)},
+              {"estimated_turn", finite_or_null(level.estimated_turn)}}},
             {"energy",
              {{"elastic", level.energy.elastic},
               {"strain_limit", level.energy.strain_limit},
@@ -99,10 +100,12 @@ LevelReport level_from(const Json& json) {
     level.residual = number_or_infinity(json.at("residual"));
     level.to_final = {number_or_infinity(json.at("to_final").at("mean")),
                       number_or_infinity(json.at("to_final").at("largest"))};
-    if (const auto found = json.find("too_coarse"); found != json.end()) // reports before 0023 have none
+    if (const auto found = json.find("too_coarse"); found != json.end()) { // older reports have none
         level.too_coarse = {found->at("share").get<double>(), number_or_infinity(found->at("worst")),
                             number_or_infinity(found->at("turn")), found->at("edge").get<double>(),
                             vector_from(found->at("place"))};
+        level.estimated_turn = number_or_infinity(found->at("estimated_turn"));
+    }
     const Json& energy = json.at("energy");
     level.energy.elastic = number_or_infinity(energy.at("elastic"));
     level.energy.strain_limit = number_or_infinity(energy.at("strain_limit"));
