@@ -18,9 +18,12 @@ Json finite_or_null(double value) {
 }
 
 std::string in_words(const FoldScale& scale) {
-    return std::isfinite(scale.radius)
-               ? fmt::format("{}, with a radius of about {:.3g} mm", describe(scale.cause), 1e3 * scale.radius)
-               : "nothing that would fold it is known";
+    if (scale.cause != FoldCause::shape)
+        return fmt::format("{}, with a radius of about {:.3g} mm", describe(scale.cause), 1e3 * scale.radius);
+    return std::isfinite(scale.length) ? fmt::format("no folds are expected; the shape at rest has a radius of about "
+                                                     "{:.3g} mm",
+                                                     1e3 * scale.length)
+                                       : "no folds are expected";
 }
 
 std::string advice(const FoldEstimates& estimates) {

@@ -214,7 +214,7 @@ TEST(LevelEstimates, EnoughVerticesMakeALevelJustFineEnough) {
     const Discretization discretization(model, 1, context);
     const HierarchyLevel& finest = discretization.mesh(0);
     const FoldScale folds{FoldCause::weight, 0.1 / most_turn, 0};
-    EXPECT_EQ(enough_vertices(finest, {&folds, 1}), std::ceil(2 / std::sqrt(3) / 0.01));
+    EXPECT_EQ(enough_vertices(finest, {&folds, 1}), std::ceil(1.15 * 2 / std::sqrt(3) / 0.01));
     const FoldScale sharp{FoldCause::weight, 1e-4, 0};
     EXPECT_EQ(enough_vertices(finest, {&sharp, 1}), model.mesh.vertex_count());
     const FoldScale none{FoldCause::shape, std::numeric_limits<double>::infinity(), 0};

@@ -318,6 +318,8 @@ LevelEstimate estimate_level(const HierarchyLevel& level, std::span<const FoldSc
 
 int enough_vertices(const HierarchyLevel& finest, std::span<const FoldScale> scales) {
     constexpr double least = 4; // vertices of a body
+    // Of equilateral triangles of edge 1 a vertex has sqrt(3)/2; decimated meshes have longer edges for their vertices.
+    constexpr double vertices_an_area = 1.15 * 2 / std::numbers::sqrt3;
     std::vector<double> areas(scales.size(), 0.0);
     for (const Face& face : finest.faces)
         if (const std::size_t part = at(finest.part[at(face[0])]); part < areas.size())
@@ -327,8 +329,7 @@ int enough_vertices(const HierarchyLevel& finest, std::span<const FoldScale> sca
         const double edge = most_turn * scales[part].radius;
         const auto has =
             static_cast<double>(std::count(finest.part.begin(), finest.part.end(), static_cast<int>(part)));
-        // Of equilateral triangles a vertex has sqrt(3)/2 edge^2.
-        sum += std::min(has, std::max(least, std::ceil(2 / std::numbers::sqrt3 * areas[part] / (edge * edge))));
+        sum += std::min(has, std::max(least, std::ceil(vertices_an_area * areas[part] / (edge * edge))));
     }
     return static_cast<int>(sum);
 }
