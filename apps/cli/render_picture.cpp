@@ -44,7 +44,7 @@ Scalars coarseness_scalars(const BodyMesh& surface, const std::filesystem::path&
         if (attribute.name == "coarseness" && attribute.domain == MeshAttribute::Domain::vertex && attribute.width == 1)
             return {"coarseness, 1: limit", MeshAttribute::Domain::vertex, attribute.values, 0, 2};
     throw InputError(file.string(), "it has no vertex property \"coarseness\"",
-                     "give a frame or the folder of a run, or another --color");
+                     "give what a run of this version has saved, or another --color");
 }
 
 /// The mesh at rest that belongs to a frame, where the run has saved it.

@@ -10,6 +10,7 @@
 #include <plisse/energy/dihedral_terms.h>
 #include <plisse/energy/hinge.h>
 #include <plisse/mesh/connectivity.h>
+#include <plisse/spatial/box.h>
 
 namespace plisse {
 
@@ -54,12 +55,12 @@ double face_area(const Face& face, const Positions& x) {
 /// A body and what its folds depend on.
 struct Shell {
     const Model& model;
+    int number;
     const Body& body;
     double rigidity, stiffness; ///< D, E t
     double size, radius;        ///< m
 
     bool curved() const { return radius < size; }
-    double thickness() const { return body.material.thickness; }
     /// Strain at which a flat one of this span gives way sideways.
     double buckling_strain(double span) const {
         return 4 * std::pow(std::numbers::pi / span, 2) * rigidity / stiffness;
@@ -75,6 +76,7 @@ Shell shell_of(const Model& model, int number) {
     for (const Face& face : faces)
         area += face_area(face, model.mesh.positions);
     return {model,
+            number,
             body,
             m.bending_scale * bending_rigidity(m.youngs_modulus, m.poisson_ratio, m.thickness),
             m.youngs_modulus * m.thickness,
@@ -144,7 +146,7 @@ std::vector<HandleStrain> handle_strains(const Shell& shell) {
     const auto& handles = shell.model.handles;
     for (std::size_t i = 0; i < handles.size(); ++i)
         for (std::size_t j = i + 1; j < handles.size(); ++j)
-            if (&shell.model.bodies[at(handles[i].body)] == &shell.body && handles[j].body == handles[i].body)
+            if (handles[i].body == shell.number && handles[j].body == shell.number)
                 strains.push_back(strain_between(handles[i], handles[j], shell.model));
     return strains;
 }
@@ -159,15 +161,19 @@ void add_handle_folds(const Shell& shell, const HandleStrain& strain, std::vecto
                                             fold_slope(strain.shear)));
 }
 
-/// The farthest that an obstacle goes, m.
+/// The farthest that an obstacle goes, by the corners of its box, m.
 double travel(const Obstacle& obstacle, const Model& model) {
+    const Range& vertices = obstacle.vertices;
+    const Box box = bounding_box(model.mesh.positions.middleCols(vertices.begin, vertices.size()));
     double farthest = 0;
-    for (int k = 0; k <= samples; ++k)
-        for (int v = obstacle.vertices.begin; v < obstacle.vertices.end; ++v) {
-            const Vec3 point = model.mesh.positions.col(v);
-            farthest = std::max(farthest, (obstacle.motion.apply(point, model.solve.duration * k / samples) -
-                                           obstacle.motion.apply(point, 0))
-                                              .norm());
+    for (int k = 1; k <= samples; ++k)
+        for (int corner = 0; corner < 8; ++corner) {
+            Vec3 point = box.low;
+            for (int axis = 0; axis < 3; ++axis)
+                if (corner >> axis & 1)
+                    point[axis] = box.high[axis];
+            const Vec3 moved = obstacle.motion.apply(point, model.solve.duration * k / samples);
+            farthest = std::max(farthest, (moved - obstacle.motion.apply(point, 0)).norm());
         }
     return farthest;
 }
