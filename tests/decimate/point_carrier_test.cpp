@@ -67,9 +67,9 @@ TEST(OnFinest, lies_on_the_surface_near_the_vertex_and_on_it_where_it_was_kept) 
     DecimationOptions options = options_to(60);
     const Hierarchy hierarchy = decimate(mesh.input(), options);
     for (const HierarchyLevel& level : hierarchy.levels) {
-        ASSERT_EQ(level.on_finest.size(), level.vertex_ids.size());
+        ASSERT_EQ(level.on_input.size(), level.vertex_ids.size());
         for (std::size_t v = 0; v < level.vertex_ids.size(); ++v) {
-            const Vec3 place = place_of(level.on_finest[v], mesh.faces, mesh.rest);
+            const Vec3 place = place_of(level.on_input[v], mesh.faces, mesh.rest);
             const double distance = (place - level.rest.col(static_cast<Eigen::Index>(v))).norm();
             const bool kept = level.vertex_ids[v] < mesh.count();
             EXPECT_LT(distance, kept ? 1e-12 : 0.15) << "vertex " << v; // of a sphere of radius 1

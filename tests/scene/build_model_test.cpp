@@ -146,6 +146,18 @@ TEST_F(BuildModel, RefusesAnObstacleThatItsScriptStartsInABody) {
     EXPECT_NE(message.find("intersect at the start"), std::string::npos) << message;
 }
 
+TEST_F(BuildModel, RefusesMoreLevelsBySubdivisionThanMemoryHolds) {
+    const auto with = [](int levels) {
+        return R"("bodies": [{"mesh": "square.obj"}], "hierarchy": {"source": "loop", "levels": )" +
+               std::to_string(levels) + "}";
+    };
+    EXPECT_EQ(refusal(with(12)), "");
+    EXPECT_EQ(build(with(12)).mesh.face_count(), 2) << "the model has the mesh as given";
+    EXPECT_NE(refusal(with(13)).find("at /hierarchy/levels: the finest level would have 3.36e+07 faces"),
+              std::string::npos)
+        << refusal(with(13));
+}
+
 TEST_F(BuildModel, SaysWhatWasChangedOnTheWay) {
     write_text(folder_.path() / "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 4 3 2\n");
     const Model m = build(R"("bodies": [{"mesh": "quad.obj"}])");

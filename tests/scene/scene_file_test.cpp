@@ -134,8 +134,6 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
         return R"({"plisse": 1, "bodies": [{"name": "a", "mesh": "a.obj")" + body + "}]" + rest + "}";
     };
     const std::vector<std::string> later = {
-        with(R"(, "hierarchy": {"operator": "loop"})"),
-        with(R"(, "hierarchy": {"source": "loop"})"),
         with(R"(, "solve": {"method": "rmtr"})"),
         with(R"(, "obstacles": [{"mesh": "b.obj", "motion": {"frames": "f/*.obj", "dt": 0.04}}])"),
         with("", R"(, "material": "denim-stable")"),
@@ -147,6 +145,30 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
     for (const std::string& text : later)
         EXPECT_NE(message_of(text).find("is not supported in this version; "), std::string::npos) << text << "\n"
                                                                                                   << message_of(text);
+}
+
+TEST(SceneFile, LevelsBySubdivisionHaveTheirOwnOperators) {
+    const auto with = [](const std::string& hierarchy) {
+        return R"({"plisse": 1, "bodies": [{"mesh": "a.obj"}], "hierarchy": {)" + hierarchy + "}}";
+    };
+    const Scene loop = parse(with(R"("source": "loop")"));
+    EXPECT_EQ(loop.hierarchy.source, HierarchySource::loop);
+    EXPECT_EQ(loop.hierarchy.prolongation, ProlongationOperator::loop);
+    EXPECT_EQ(parse(scene_to_json(loop).dump()).hierarchy.prolongation, ProlongationOperator::loop);
+    EXPECT_FALSE(scene_to_json(loop)["hierarchy"].contains("coarsest_vertices"));
+    const Scene shell = parse(with(R"("operator": "shell", "source": "loop")"));
+    EXPECT_EQ(shell.hierarchy.prolongation, ProlongationOperator::shell);
+    EXPECT_EQ(parse(scene_to_json(shell).dump()).hierarchy.prolongation, ProlongationOperator::shell);
+
+    const auto wrong = [&](const std::string& hierarchy, const std::string& part) {
+        EXPECT_NE(message_of(with(hierarchy)).find(part), std::string::npos) << message_of(with(hierarchy));
+    };
+    wrong(R"("operator": "loop")",
+          "at /hierarchy/operator: the operator loop needs levels made by subdivision; set `source` to \"loop\"");
+    wrong(R"("operator": "affine", "source": "loop")",
+          "at /hierarchy/operator: the operator affine needs levels made by decimation; take loop");
+    wrong(R"("source": "loop", "coarsest_vertices": 500)",
+          "at /hierarchy/coarsest_vertices: this key means nothing here; leave it out");
 }
 
 TEST(SceneFile, EveryPresetHasSoundValuesAndASource) {

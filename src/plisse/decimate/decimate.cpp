@@ -72,7 +72,7 @@ public:
 
     HierarchyLevel finest() const {
         HierarchyLevel level = make_level(all_vertices(input_));
-        level.to_finest = level.on_finest = anchors(finest_points_, input_.part.size(), level);
+        level.to_finest = level.on_input = anchors(finest_points_, input_.part.size(), level);
         return level;
     }
 
@@ -107,7 +107,7 @@ public:
         }
         meet_levels(0);
         for (std::size_t l = 0; l < points.size(); ++l) {
-            levels[l].on_finest = anchors(points[l], levels[l].vertex_ids.size(), levels.back());
+            levels[l].on_input = anchors(points[l], levels[l].vertex_ids.size(), levels.back());
             count(points[l]);
         }
     }

@@ -163,7 +163,7 @@ void visit(Visitor& v, HierarchyLevel& level) {
     for (std::vector<int>* list : {&level.vertex_ids, &level.face_ids, &level.part, &level.label})
         v(*list);
     v(level.to_finest);
-    v(level.on_finest);
+    v(level.on_input);
     v(level.to_next);
     v(level.batches);
 }

@@ -12,7 +12,7 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-/// Reads an attribute of the finest mesh anywhere on it.
+/// Reads an attribute of the input's mesh anywhere on it.
 class Sampler {
 public:
     Sampler(const MeshAttribute& attribute, const std::vector<Face>& faces) : attribute_(attribute), faces_(faces) {}
@@ -41,11 +41,11 @@ private:
     const std::vector<Face>& faces_;
 };
 
-/// The finest faces around each finest vertex.
-std::vector<std::vector<int>> faces_around(const HierarchyLevel& finest) {
-    std::vector<std::vector<int>> around(at(static_cast<int>(finest.rest.cols())));
-    for (std::size_t f = 0; f < finest.faces.size(); ++f)
-        for (int v : finest.faces[f])
+/// The input's faces around each of its vertices.
+std::vector<std::vector<int>> faces_around(const HierarchyLevel& input) {
+    std::vector<std::vector<int>> around(at(static_cast<int>(input.rest.cols())));
+    for (std::size_t f = 0; f < input.faces.size(); ++f)
+        for (int v : input.faces[f])
             around[at(v)].push_back(static_cast<int>(f));
     return around;
 }
@@ -85,23 +85,41 @@ Vec3 extended_weights(const Face& face, const Positions& rest, const Vec3& x) {
     return {1 - along.sum(), along[0], along[1]};
 }
 
-/// A corner takes the values at its vertex's place, of all sides that meet there those nearest to what the values on
-/// the face's own finest face extend to. Where none is near, all of them are across a seam, and it takes the extended
-/// ones.
-void append_corners(const Sampler& sampler, const HierarchyLevel& level, const HierarchyLevel& finest,
+/// A vertex that no face uses has its own values.
+void append_vertices(const Sampler& sampler, const HierarchyLevel& level, const HierarchyLevel& input,
+                     std::vector<double>& values) {
+    for (std::size_t v = 0; v < level.on_input.size(); ++v) {
+        const Anchor& anchor = level.on_input[v];
+        if (anchor.face >= 0) {
+            append(values, sampler.at_place(anchor, sampler.vertices(anchor.face)));
+            continue;
+        }
+        const auto own = std::lower_bound(input.vertex_ids.begin(), input.vertex_ids.end(), level.vertex_ids[v]);
+        append(values, sampler.values(static_cast<int>(own - input.vertex_ids.begin())));
+    }
+}
+
+/// A corner takes the values at its vertex's place: those on the side of the face's own face of the input where that
+/// has the place, else of all sides that meet there those nearest to what the values on its own face extend to. Where
+/// none is near, all of them are across a seam, and it takes the extended ones.
+void append_corners(const Sampler& sampler, const HierarchyLevel& level, const HierarchyLevel& input,
                     std::vector<double>& values) {
-    const auto around = faces_around(finest);
+    const auto around = faces_around(input);
     const auto value_at = [&](const Anchor& place) { return sampler.at_place(place, Sampler::corners(place.face)); };
     for (std::size_t f = 0; f < level.faces.size(); ++f) {
         const int own = level.face_ids[f];
         const VecX centre = value_at({own, Vec3::Constant(1.0 / 3)});
         for (int v : level.faces[f]) {
             const VecX extended =
-                value_at({own, extended_weights(finest.faces[at(own)], finest.rest, level.rest.col(v))});
+                value_at({own, extended_weights(input.faces[at(own)], input.rest, level.rest.col(v))});
             VecX chosen = extended;
             double nearest = (extended - centre).norm(); // farther is across a seam
-            for (const Anchor& place : same_places(level.on_finest[at(v)], finest.faces, around)) {
+            for (const Anchor& place : same_places(level.on_input[at(v)], input.faces, around)) {
                 const VecX candidate = value_at(place);
+                if (place.face == own) {
+                    chosen = candidate;
+                    break;
+                }
                 if (const double distance = (candidate - extended).norm(); distance <= nearest) {
                     nearest = distance;
                     chosen = candidate;
@@ -115,23 +133,23 @@ void append_corners(const Sampler& sampler, const HierarchyLevel& level, const H
 } // namespace
 
 std::vector<MeshAttribute> attributes_on(const Hierarchy& hierarchy, int level,
-                                         const std::vector<MeshAttribute>& finest) {
-    const HierarchyLevel& coarse = hierarchy.levels[at(level)];
-    if (level + 1 == hierarchy.level_count())
-        return finest;
+                                         const std::vector<MeshAttribute>& of_input) {
+    const HierarchyLevel& mesh = hierarchy.levels[at(level)];
+    const HierarchyLevel& input = hierarchy.levels[at(hierarchy.input_level())];
+    if (level == hierarchy.input_level())
+        return of_input;
     std::vector<MeshAttribute> result;
-    for (const MeshAttribute& attribute : finest) {
-        const Sampler sampler(attribute, hierarchy.finest().faces);
+    for (const MeshAttribute& attribute : of_input) {
+        const Sampler sampler(attribute, input.faces);
         MeshAttribute& on_level = result.emplace_back(attribute);
         on_level.values.clear();
         if (attribute.domain == MeshAttribute::Domain::vertex)
-            for (const Anchor& anchor : coarse.on_finest)
-                append(on_level.values, sampler.at_place(anchor, sampler.vertices(anchor.face)));
+            append_vertices(sampler, mesh, input, on_level.values);
         else if (attribute.domain == MeshAttribute::Domain::face)
-            for (int id : coarse.face_ids)
+            for (int id : mesh.face_ids)
                 append(on_level.values, sampler.values(id));
         else
-            append_corners(sampler, coarse, hierarchy.finest(), on_level.values);
+            append_corners(sampler, mesh, input, on_level.values);
     }
     return result;
 }

@@ -6,12 +6,22 @@ namespace plisse {
 
 namespace {
 
+/// The product of the rules on the way.
+ProlongationWeights subdivision_weights(const Hierarchy& hierarchy, int from, int to) {
+    ProlongationWeights weights = hierarchy.levels[static_cast<std::size_t>(from)].subdivision;
+    for (int l = from + 1; l < to; ++l)
+        weights = hierarchy.levels[static_cast<std::size_t>(l)].subdivision * weights;
+    return weights;
+}
+
 Prolongation prolongation_between(const Hierarchy& hierarchy, int from, int to, const std::vector<Anchor>& anchors,
                                   ProlongationOperator kind) {
     const HierarchyLevel& coarse = hierarchy.levels[static_cast<std::size_t>(from)];
     const HierarchyLevel& fine = hierarchy.levels[static_cast<std::size_t>(to)];
     if (kind == ProlongationOperator::affine)
         return {affine_weights(hierarchy, from, to), coarse.faces, anchors, fine.rest};
+    if (kind == ProlongationOperator::loop)
+        return {subdivision_weights(hierarchy, from, to), coarse.faces, anchors, fine.rest};
     return {coarse.rest, coarse.faces, anchors, fine.rest, kind};
 }
 

@@ -7,7 +7,8 @@
 #include <unordered_map>
 
 #include <plisse/base/parallel.h>
-#include <plisse/geometry/ccd.h>
+#include <plisse/contact/candidates.h>
+#include <plisse/drive/pair_motion.h>
 
 namespace plisse {
 
@@ -16,13 +17,6 @@ namespace {
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
-
-/// Two primitives of which at least one moves; the vertices are sorted within each primitive.
-struct MovingPair {
-    StencilKind kind;
-    std::array<int, 4> vertices;
-    auto operator<=>(const MovingPair&) const = default;
-};
 
 /// Which record of the batch moves a vertex, and where it still has to go.
 struct Movers {
@@ -120,127 +114,6 @@ struct Cluster {
     std::vector<MovingPair> pairs;
 };
 
-Stencil gather(const std::array<int, 4>& vertices, const auto& column) {
-    Stencil stencil;
-    for (int k = 0; k < 4; ++k)
-        stencil.col(k) = column(vertices[at(k)]);
-    return stencil;
-}
-
-/// How much of its distance a pair keeps while it moves: less than half of the reference gap would start the solver
-/// where the barrier is so stiff that it cuts step after step.
-double kept_gap(double distance, double reference_gap) {
-    return std::min(0.9 * distance, std::max(0.1 * distance, 0.5 * reference_gap));
-}
-
-/// Moves the vertices of one cluster.
-class ClusterMotion {
-public:
-    ClusterMotion(ExpandingMesh& mesh, const Cluster& cluster, const std::vector<const Collapse*>& batch,
-                  double reference_gap)
-        : mesh_(mesh) {
-        std::unordered_map<int, int> mover_of;
-        for (int r : cluster.records)
-            for (int v : {batch[at(r)]->i, batch[at(r)]->j}) {
-                mover_of[v] = static_cast<int>(movers_.size());
-                movers_.push_back(v);
-                remaining_.emplace_back(mesh.targets().col(v) - mesh.position(v));
-            }
-        for (const MovingPair& pair : cluster.pairs) {
-            Motion motion{pair, {}, 0, 0, 1};
-            for (std::size_t k = 0; k < 4; ++k) {
-                const auto found = mover_of.find(pair.vertices[k]);
-                motion.movers[k] = found == mover_of.end() ? -1 : found->second;
-            }
-            // What is near at rest may come as near again.
-            const Stencil rest = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.rest().col(v); });
-            motion.reference_gap = std::min(reference_gap, std::sqrt(squared_distance(pair.kind, rest)));
-            motions_.push_back(motion);
-        }
-    }
-
-    /// Advances until every vertex has arrived or is stopped; returns how many were stopped.
-    int run() {
-        int stopped = 0;
-        for (;;) {
-            double least = 1;
-            for (Motion& motion : motions_) {
-                motion.limit = limit_of(motion, std::min(1.0, least * (1 + 2 * same)));
-                least = std::min(least, motion.limit);
-            }
-            advance(least);
-            if (least == 1)
-                return stopped;
-            stopped += stop(least);
-        }
-    }
-
-private:
-    static constexpr double same = 1e-6; ///< limits that differ by no more than this share are reached together
-
-    struct Motion {
-        MovingPair pair;
-        std::array<int, 4> movers; ///< of its vertices, -1 for one that does not move
-        double reference_gap = 0;  ///< m
-        double least_distance = 0; ///< m: it is no nearer now
-        double limit = 1;
-    };
-
-    Vec3 displacement(int mover) const { return mover < 0 ? Vec3::Zero() : remaining_[at(mover)]; }
-
-    /// A bound on how much nearer the two come on the whole of their way, m.
-    double approach(const Motion& motion) const {
-        double squared = 0;
-        for (int mover : motion.movers)
-            if (mover >= 0)
-                squared = std::max(squared, remaining_[at(mover)].squaredNorm());
-        return 2 * std::sqrt(squared);
-    }
-
-    /// The share of its way up to which a pair is safe, `end` if that is less.
-    double limit_of(Motion& motion, double end) const {
-        const double nearer = approach(motion) * end;
-        if (nearer == 0)
-            return 1;
-        // Far pairs keep more than kept_gap() can ask for.
-        if (nearer <= 0.5 * motion.least_distance && motion.least_distance - nearer >= 0.5 * motion.reference_gap)
-            return end;
-        const StencilKind kind = motion.pair.kind;
-        const Stencil x = gather(motion.pair.vertices, [&](int v) -> Vec3 { return mesh_.position(v); });
-        const Stencil d = gather(motion.movers, [&](int mover) { return displacement(mover); });
-        motion.least_distance = std::sqrt(squared_distance(kind, x));
-        const double kept = kept_gap(motion.least_distance, motion.reference_gap);
-        return keeps_apart(kind, x, d, motion.least_distance, kept, end) ? end : safe_step(kind, x, d, kept, end);
-    }
-
-    void advance(double share) {
-        for (Motion& motion : motions_)
-            motion.least_distance -= share * approach(motion);
-        for (std::size_t m = 0; m < movers_.size(); ++m) {
-            mesh_.set_position(movers_[m], mesh_.position(movers_[m]) + share * remaining_[m]);
-            remaining_[m] *= 1 - share;
-        }
-    }
-
-    /// Stops the vertices of the pairs that have reached their limit; returns how many.
-    int stop(double limit) {
-        int stopped = 0;
-        for (const Motion& motion : motions_)
-            if (motion.limit <= limit * (1 + same))
-                for (int mover : motion.movers)
-                    if (mover >= 0 && !remaining_[at(mover)].isZero(0)) {
-                        remaining_[at(mover)].setZero();
-                        ++stopped;
-                    }
-        return stopped;
-    }
-
-    ExpandingMesh& mesh_;
-    std::vector<int> movers_; ///< their vertices
-    std::vector<Vec3> remaining_;
-    std::vector<Motion> motions_;
-};
-
 std::vector<Cluster> cluster_records(const std::vector<std::vector<MovingPair>>& pairs, const Movers& movers) {
     const int count = static_cast<int>(pairs.size());
     Clusters clusters(count);
@@ -289,7 +162,11 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
 
     std::vector<int> stopped(clusters.size());
     parallel_for(static_cast<int>(clusters.size()), 1, [&](int c) {
-        stopped[at(c)] = ClusterMotion(mesh, clusters[at(c)], batch, options.reference_gap).run();
+        std::vector<int> movers;
+        for (int r : clusters[at(c)].records)
+            movers.insert(movers.end(), {batch[at(r)]->i, batch[at(r)]->j});
+        stopped[at(c)] = move_apart(mesh.positions(), mesh.targets(), mesh.rest(), movers, clusters[at(c)].pairs,
+                                    {options.reference_gap, 0});
     });
 
     BatchMotionResult result;
@@ -298,7 +175,7 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
     for (std::size_t r = 0; r < batch.size(); ++r) {
         double least = std::numeric_limits<double>::infinity();
         for (const MovingPair& pair : pairs[r]) {
-            const Stencil x = gather(pair.vertices, [&](int v) -> Vec3 { return mesh.position(v); });
+            const Stencil x = gather(mesh.positions(), pair.vertices);
             least = std::min(least, std::sqrt(separate(pair.kind, x).squared_distance));
         }
         result.min_gap = std::min(result.min_gap, least);

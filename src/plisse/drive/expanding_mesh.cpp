@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <plisse/decimate/level_prolongation.h>
+#include <plisse/drive/refinement_targets.h>
 
 namespace plisse {
 
@@ -37,24 +37,16 @@ ExpandingMesh::ExpandingMesh(const Discretization& discretization, int from, con
         rest_.col(coarse.vertex_ids[v]) = coarse.rest.col(static_cast<int>(v));
         obstacle_[at(coarse.vertex_ids[v])] = discretization.model().is_obstacle(coarse.part[v]);
     }
-    set_targets(from, x, t);
+    set_targets(from, refinement_targets(discretization, from, x, t));
     update_boxes(coarse.face_ids, [&](int v) { return Box{position(v), position(v)}; });
 }
 
-void ExpandingMesh::set_targets(int from, const Positions& x, double t) {
+void ExpandingMesh::set_targets(int from, const Positions& next_level) {
     const HierarchyLevel& coarse = discretization_.mesh(from);
     const HierarchyLevel& fine = discretization_.mesh(from + 1);
-    const Prolongation prolongation =
-        prolongation_to_next(discretization_.hierarchy(), from, discretization_.model().hierarchy.prolongation);
-    Positions prolonged = prolongation.apply(x);
-    const Positions script = discretization_.script(from + 1, t);
-    const auto& prescribed = discretization_.layout(from + 1).prescribed;
-    for (int v = 0; v < prolonged.cols(); ++v) {
+    for (int v = 0; v < next_level.cols(); ++v) {
         const int id = fine.vertex_ids[at(v)];
-        for (int axis = 0; axis < 3; ++axis)
-            if (prescribed[at(3 * v + axis)])
-                prolonged(axis, v) = script(axis, v);
-        targets_.col(id) = prolonged.col(v);
+        targets_.col(id) = next_level.col(v);
         rest_.col(id) = fine.rest.col(v);
         obstacle_[at(id)] = discretization_.model().is_obstacle(fine.part[at(v)]);
     }

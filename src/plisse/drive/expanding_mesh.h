@@ -24,6 +24,7 @@ public:
     } ///< where each vertex of the next level (and of between) should go
     Vec3 position(int id) const { return positions_.col(id); }
     const Positions& positions() const { return positions_; }
+    Positions& positions() { return positions_; }
     void set_position(int id, const Vec3& p) { positions_.col(id) = p; }
     bool is_obstacle_vertex(int id) const { return obstacle_[static_cast<std::size_t>(id)] != 0; }
     bool is_obstacle_face(int face) const { return is_obstacle_vertex(faces_.face(face)[0]); }
@@ -51,7 +52,7 @@ public:
     Positions level_positions(int level) const;
 
 private:
-    void set_targets(int from, const Positions& x, double t);
+    void set_targets(int from, const Positions& next_level);
 
     const Discretization& discretization_;
     DynamicFaces faces_;

@@ -67,6 +67,7 @@ struct LevelReport {
 
 struct RefinementReport {
     int from = 0, to = 0, expansions = 0, colors = 0, first_try = 0, sampled = 0, relaxed = 0, deferred = 0;
+    int stopped = 0;                 ///< vertices held short of their targets by what they would have met
     int over_limit = 0;              ///< faces that were at their strain limit or beyond, and were brought within it
     int strain_limit_iterations = 0; ///< of Newton's method, to bring them there
     double min_gap = 0;

@@ -11,6 +11,7 @@
 #include <plisse/drive/patch_relaxation.h>
 #include <plisse/drive/run_fraction.h>
 #include <plisse/drive/safe_perturbation.h>
+#include <plisse/drive/subdivided_state.h>
 
 namespace plisse {
 
@@ -33,6 +34,7 @@ public:
         if (failed >= 0)
             return failed;
         const BatchMotionResult motion = move_batch(mesh_, records, {gap_, least_gap(), least_gap() + thickness_});
+        report.stopped += motion.stopped_vertices;
         for (int c : motion.tight_records) {
             relax_patch(mesh_, patch_vertices(mesh_, record(c)), least_gap(), context_);
             ++report.relaxed;
@@ -106,19 +108,14 @@ std::vector<std::uint8_t> new_vertices(const Discretization& discretization, int
     return is_new;
 }
 
-} // namespace
-
-RefineResult refine(const Discretization& discretization, int from, const Positions& x, double t, Context& context,
-                    double stiffness_factor) {
-    const Stopwatch watch;
-    RefineResult result;
+/// Undoes all collapses on the way to the next level. Empty when that was cancelled, or failed with a message.
+Positions expand(const Discretization& discretization, int from, const Positions& x, double t, Context& context,
+                 RefineResult& result) {
     const HierarchyLevel& coarse = discretization.mesh(from);
-    result.report.from = from;
-    result.report.to = from + 1;
-    result.report.colors = static_cast<int>(coarse.batches.size());
-    result.report.min_gap = std::numeric_limits<double>::infinity();
     ExpandingMesh mesh(discretization, from, x, t);
     BatchExpansion expansion(mesh, discretization.model().contact, context);
+    result.report.colors = static_cast<int>(coarse.batches.size());
+    result.report.min_gap = std::numeric_limits<double>::infinity();
     Progress shown;
     shown.level = from + 1;
     shown.level_count = discretization.finest() + 1;
@@ -127,10 +124,8 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
     shown.duration = discretization.model().solve.duration;
     const RunFraction run(discretization.model(), discretization.finest() + 1);
     for (const std::vector<int>& batch : coarse.batches) {
-        if (context.cancelled()) {
-            result.cancelled = true;
-            return result;
-        }
+        if (context.cancelled())
+            return {};
         const int failed = expansion.expand(batch, result.report);
         if (failed >= 0) {
             const Collapse& record = discretization.hierarchy().collapses[at(failed)];
@@ -138,13 +133,42 @@ RefineResult refine(const Discretization& discretization, int from, const Positi
                                          "on the way from level {} to level {}",
                                          mesh.position(record.i).x(), mesh.position(record.i).y(),
                                          mesh.position(record.i).z(), from, from + 1);
-            return result;
+            return {};
         }
         ++shown.step;
         shown.fraction = run.in_refinement(from + 1, shown.step / static_cast<double>(coarse.batches.size()));
         context.on_progress(shown);
     }
-    Positions expanded = mesh.level_positions(from + 1);
+    return mesh.level_positions(from + 1);
+}
+
+Positions subdivide(const Discretization& discretization, int from, const Positions& x, double t,
+                    RefinementReport& report) {
+    SubdividedState state = subdivide_state(discretization, from, x, t);
+    report.expansions = report.first_try = state.new_vertices;
+    report.colors = 1;
+    report.stopped = state.stopped_vertices;
+    report.min_gap = state.min_gap;
+    return std::move(state.positions);
+}
+
+} // namespace
+
+RefineResult refine(const Discretization& discretization, int from, const Positions& x, double t, Context& context,
+                    double stiffness_factor) {
+    const Stopwatch watch;
+    RefineResult result;
+    result.report.from = from;
+    result.report.to = from + 1;
+    Positions expanded = discretization.hierarchy().is_subdivided()
+                             ? subdivide(discretization, from, x, t, result.report)
+                             : expand(discretization, from, x, t, context, result);
+    if (!result.message.empty())
+        return result;
+    if (context.cancelled()) {
+        result.cancelled = true;
+        return result;
+    }
     const LimitRelaxationResult relaxed = relax_to_strain_limits(
         discretization, from + 1, new_vertices(discretization, from), expanded, context, stiffness_factor);
     if (context.cancelled()) {

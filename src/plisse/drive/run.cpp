@@ -28,9 +28,10 @@ bool is_direct(const Model& model) {
     return model.solve.method == Method::direct;
 }
 
-/// Meshes a run needs: `direct` on the finest needs no hierarchy.
+/// Meshes a run needs: `direct` on the finest needs no hierarchy, unless that makes the finest.
 int levels_needed(const Model& model) {
-    return is_direct(model) && !model.solve.level ? 1 : model.hierarchy.levels;
+    const bool by_decimation = model.hierarchy.source == HierarchySource::decimation;
+    return is_direct(model) && !model.solve.level && by_decimation ? 1 : model.hierarchy.levels;
 }
 
 /// Steps the timeline on the first level, then refines level by level to the last. `direct` has one level only.
@@ -118,15 +119,17 @@ void Driver::check_limits(int level, const Positions& x) const {
     const StrainLimit::Excess excess = StrainLimit(discretization_, level).excess(x, 2 * StrainLimitEnergy::least_room);
     if (excess.faces == 0)
         return;
-    const bool as_given = level == discretization_.finest();
+    const Hierarchy& hierarchy = discretization_.hierarchy();
+    const bool as_given = level == hierarchy.input_level();
     throw InputError(model_.name,
                      fmt::format("{} faces{} are stretched beyond their strain limit at the start: one of \"{}\" near "
                                  "({:.6g}, {:.6g}, {:.6g}) to {:.6g}, and its limit is {:.6g}",
                                  excess.faces, as_given ? "" : fmt::format(" of level {}", level),
                                  model_.bodies[at(excess.body)].name, excess.place.x(), excess.place.y(),
                                  excess.place.z(), excess.stretch, excess.limit),
-                     as_given ? "a start that is stretched less, or a higher `strain_limit`"
-                              : "use fewer levels, more coarsest_vertices, or method `direct`");
+                     as_given || hierarchy.is_subdivided()
+                         ? "a start that is stretched less, or a higher `strain_limit`"
+                         : "use fewer levels, more coarsest_vertices, or method `direct`");
 }
 
 Checkpoint Driver::fresh_progress(int level, const Positions& x) const {
@@ -198,7 +201,8 @@ bool Driver::simulate() {
         progress = fresh_progress(first_level_, discretization_.start(first_level_));
         progress.t = 0;
         check_start(progress.positions);
-        check_limits(discretization_.finest(), discretization_.start(discretization_.finest()));
+        const int input_level = discretization_.hierarchy().input_level();
+        check_limits(input_level, discretization_.start(input_level));
         check_limits(first_level_, progress.positions);
     }
     for (int level = progress.level;; ++level) {

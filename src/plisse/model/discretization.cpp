@@ -1,6 +1,7 @@
 #include <plisse/model/discretization.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <tuple>
 
@@ -8,7 +9,9 @@
 #include <plisse/decimate/level_prolongation.h>
 #include <plisse/linalg/linear_solver.h>
 #include <plisse/mesh/connectivity.h>
+#include <plisse/model/finest_model.h>
 #include <plisse/spatial/intersections.h>
+#include <plisse/subdivide/subdivide.h>
 
 #include <fmt/format.h>
 
@@ -29,25 +32,48 @@ Positions posed_rest(const Model& model) {
     return rest;
 }
 
-/// Label of each vertex (-1: no handle) and the handles behind each label: vertices of one label may merge.
-std::vector<int> label_handles(const Model& model, std::vector<std::vector<int>>& handles_of_label) {
-    std::vector<std::vector<int>> handles_of_vertex(at(model.mesh.vertex_count()));
-    for (std::size_t h = 0; h < model.handles.size(); ++h)
-        for (int v : model.handles[h].vertices)
-            handles_of_vertex[at(v)].push_back(static_cast<int>(h));
-    std::map<std::vector<int>, int> label_of;
-    std::vector<int> labels(at(model.mesh.vertex_count()), -1);
-    for (std::size_t v = 0; v < labels.size(); ++v) {
-        if (handles_of_vertex[v].empty())
-            continue;
-        const auto [entry, fresh] =
-            label_of.try_emplace(handles_of_vertex[v], static_cast<int>(handles_of_label.size()));
-        if (fresh)
-            handles_of_label.push_back(handles_of_vertex[v]);
-        labels[v] = entry->second;
-    }
-    return labels;
+int body_vertex_count(const Model& model) {
+    return model.bodies.empty() ? 0 : model.bodies.back().vertices.end;
 }
+
+/// Numbers sets of handles: vertices with the same one may merge.
+class HandleLabels {
+public:
+    explicit HandleLabels(std::vector<std::vector<int>>& handles_of_label) : handles_(handles_of_label) {}
+
+    /// Of each vertex; -1: no handle.
+    std::vector<int> of_vertices(const Model& model) {
+        std::vector<std::vector<int>> handles_of_vertex(at(model.mesh.vertex_count()));
+        for (std::size_t h = 0; h < model.handles.size(); ++h)
+            for (int v : model.handles[h].vertices)
+                handles_of_vertex[at(v)].push_back(static_cast<int>(h));
+        std::vector<int> labels;
+        for (const std::vector<int>& handles : handles_of_vertex)
+            labels.push_back(label_of(handles));
+        return labels;
+    }
+
+    /// Of what both have.
+    int shared(int a, int b) {
+        std::vector<int> handles;
+        std::set_intersection(handles_[at(a)].begin(), handles_[at(a)].end(), handles_[at(b)].begin(),
+                              handles_[at(b)].end(), std::back_inserter(handles));
+        return label_of(handles);
+    }
+
+private:
+    int label_of(const std::vector<int>& handles) {
+        if (handles.empty())
+            return -1;
+        const auto [entry, fresh] = numbers_.try_emplace(handles, static_cast<int>(handles_.size()));
+        if (fresh)
+            handles_.push_back(handles);
+        return entry->second;
+    }
+
+    std::vector<std::vector<int>>& handles_; ///< of each label, ascending
+    std::map<std::vector<int>, int> numbers_;
+};
 
 /// Coarsening an obstacle this small saves nothing and costs its shape: a box would lose its faces' planes, and what it
 /// presses slips out.
@@ -82,11 +108,51 @@ DecimationResult build_hierarchy(const Model& model, const Positions& rest, cons
 
 Discretization::Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store)
     : model_(model) {
-    const std::vector<int> labels = label_handles(model_, handles_of_label_);
-    decimation_ = build_hierarchy(model_, posed_rest(model_), labels, level_count, context, store);
+    if (model.hierarchy.source == HierarchySource::loop)
+        subdivide_model(level_count);
+    else
+        decimation_ = build_hierarchy(model_, posed_rest(model_), HandleLabels(handles_of_label_).of_vertices(model_),
+                                      level_count, context, store);
     layouts_.resize(hierarchy().levels.size());
     for (int level = 0; level <= finest(); ++level)
         lay_out(level);
+    if (hierarchy().is_subdivided())
+        expect_no_intersections();
+}
+
+void Discretization::subdivide_model(int level_count) {
+    HandleLabels labels(handles_of_label_);
+    SubdivisionInput input;
+    input.rest = posed_rest(model_);
+    input.surface = {model_.mesh.faces, model_.vertex_parts(), labels.of_vertices(model_)};
+    input.kept_part.assign(model_.bodies.size(), 0);
+    input.kept_part.resize(at(model_.part_count()), 1);
+    input.label_between = [&](int a, int b) { return labels.shared(a, b); };
+    decimation_.hierarchy = subdivide(input, level_count);
+    start_on_input_ = input.rest;
+    start_on_input_.leftCols(body_vertex_count(model_)) = model_.start.leftCols(body_vertex_count(model_));
+    model_ = finest_model(model_, hierarchy(), subdivided_start(finest()), handles_of_label_);
+}
+
+// What is smoothed also shrinks, and may come to what lay beside it.
+void Discretization::expect_no_intersections() const {
+    for (int level = 1; level <= finest(); ++level) {
+        const HierarchyLevel& fine = mesh(level);
+        const auto pairs = intersecting_pairs(fine.rest, fine.faces, both_obstacles(level), 1);
+        if (pairs.empty())
+            continue;
+        const Vec3 place = fine.rest.col(fine.faces[at(pairs.front()[0])][0]);
+        throw InputError(model_.name,
+                         fmt::format("level {}, subdivided, intersects itself at rest near ({:.6g}, {:.6g}, {:.6g})",
+                                     level, place.x(), place.y(), place.z()),
+                         "give a mesh that is finer there, or separate the surfaces");
+    }
+}
+
+std::function<bool(int, int)> Discretization::both_obstacles(int level) const {
+    return [&part = layout(level).face_part, this](int a, int b) {
+        return model_.is_obstacle(part[at(a)]) && model_.is_obstacle(part[at(b)]);
+    };
 }
 
 void Discretization::lay_out(int level) {
@@ -164,16 +230,23 @@ Positions Discretization::script(int level, double t) const {
 }
 
 Positions Discretization::start(int level) const {
-    const Range bodies{0, model_.bodies.empty() ? 0 : model_.bodies.back().vertices.end};
-    const bool starts_at_rest = model_.start.leftCols(bodies.end) == model_.mesh.positions.leftCols(bodies.end);
+    const int of_bodies = body_vertex_count(model_);
+    const bool starts_at_rest = model_.start.leftCols(of_bodies) == model_.mesh.positions.leftCols(of_bodies);
     if (starts_at_rest)
         return mesh(level).rest;
     if (level == finest()) {
         Positions x = mesh(level).rest;
-        x.leftCols(bodies.end) = model_.start.leftCols(bodies.end);
+        x.leftCols(of_bodies) = model_.start.leftCols(of_bodies);
         return x;
     }
-    return restricted_start(level);
+    return hierarchy_.is_subdivided() ? subdivided_start(level) : restricted_start(level);
+}
+
+Positions Discretization::subdivided_start(int level) const {
+    Positions x = start_on_input_;
+    for (int l = 0; l < level; ++l)
+        x = subdivided_positions(hierarchy_, l, x);
+    return x;
 }
 
 // Least squares for the anchors, min sum_i |U x + a(x) - start_i|^2 with a held, repeated: a handful of rounds settles
@@ -210,10 +283,7 @@ Positions Discretization::restricted_start(int level) const {
             system.scatter(solver.solve(system, system.gather(as_vector(prolongation.pull_back_lagged(residual)))));
         x += as_positions(step);
     }
-    const auto skip = [&](int a, int b) {
-        return model_.is_obstacle(layout(level).face_part[at(a)]) && model_.is_obstacle(layout(level).face_part[at(b)]);
-    };
-    if (!intersecting_pairs(x, coarse.faces, skip, 1).empty())
+    if (!intersecting_pairs(x, coarse.faces, both_obstacles(level), 1).empty())
         throw InputError(model_.name, fmt::format("the start shape intersects itself when carried to level {}", level),
                          "use fewer levels, more coarsest_vertices, or method `direct`");
     return x;

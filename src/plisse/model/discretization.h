@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <plisse/base/context.h>
@@ -22,11 +23,14 @@ struct LevelLayout {
 /// A model on its hierarchy: levels, scripts and start states. Level 0 is the coarsest.
 class Discretization {
 public:
-    /// Decimates, unless the store has the result; says so through the context when a level cannot be as coarse as
-    /// asked. level_count >= 1.
+    /// Decimates, unless the store has the result, and says so through the context when a level cannot be as coarse as
+    /// asked; or subdivides. level_count >= 1. Throws InputError when a level made by subdivision intersects itself.
     Discretization(const Model& model, int level_count, Context& context, HierarchyStore* store = nullptr);
 
+    /// On the finest level. By subdivision a vertex between others belongs to a handle or a load when all of those do,
+    /// and attributes are left out.
     const Model& model() const { return model_; }
+    /// Of a subdivided mesh the hierarchy alone.
     const DecimationResult& decimation() const { return decimation_; }
     const Hierarchy& hierarchy() const { return decimation_.hierarchy; }
     const HierarchyLevel& mesh(int level) const { return hierarchy().levels[static_cast<std::size_t>(level)]; }
@@ -45,10 +49,15 @@ public:
     const std::vector<int>& handles_of(int level, int vertex) const;
 
 private:
+    void subdivide_model(int level_count);
+    void expect_no_intersections() const;
+    std::function<bool(int, int)> both_obstacles(int level) const;
     void lay_out(int level);
     Positions restricted_start(int level) const;
+    Positions subdivided_start(int level) const;
 
     Model model_;
+    Positions start_on_input_; ///< by subdivision: of level 0
     DecimationResult decimation_;
     std::vector<LevelLayout> layouts_;
     std::vector<std::vector<int>> handles_of_label_;

@@ -82,16 +82,21 @@ struct ContactSettings {
     std::vector<Pair> pairs;
 };
 
+enum class HierarchySource {
+    decimation, ///< the model's mesh is the finest level, the others come of it by edge collapse
+    loop        ///< the model's mesh is the coarsest level, the others come of it by Loop's subdivision of bodies
+};
 enum class BendingOn { finest, level };
 enum class Curvature { automatic, own, galerkin };
 enum class GradientKind { exact, lagged };
 enum class Method { progressive, direct };
 
 struct HierarchySettings {
-    int levels = 3; ///< meshes, >= 1
-    int coarsest_vertices = 500;
-    ProlongationOperator prolongation = ProlongationOperator::shell;
+    int levels = 3;                                                  ///< meshes, >= 1
+    int coarsest_vertices = 500;                                     ///< by decimation
+    ProlongationOperator prolongation = ProlongationOperator::shell; ///< affine: by decimation; loop: by loop
     BendingOn bending_on = BendingOn::finest;
+    HierarchySource source = HierarchySource::decimation;
 };
 
 struct SolveSettings {

@@ -1,6 +1,7 @@
 #include <plisse/scene/build_model.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/core.h>
@@ -35,6 +36,7 @@ public:
         set_contact();
         model_.hierarchy = scene_.hierarchy;
         model_.solve = scene_.solve;
+        expect_no_flood_of_faces();
         expect_no_intersections();
         for (std::size_t b = 0; b < model_.bodies.size(); ++b)
             expect_within_limit(model_.bodies[b], fmt::format("/bodies/{}", b));
@@ -157,6 +159,18 @@ private:
         load.body = body_number(spec.body);
         load.vertices = selected(load.body, spec.select, pointer + "/select");
         load.value = spec.force ? *spec.force : *spec.traction;
+    }
+
+    /// Each level made by subdivision has four times the faces.
+    void expect_no_flood_of_faces() const {
+        constexpr double most = 2e7;
+        const HierarchySettings& hierarchy = model_.hierarchy;
+        const double faces = model_.bodies.back().faces.end * std::pow(4.0, hierarchy.levels - 1);
+        if (hierarchy.source == HierarchySource::loop && faces > most)
+            throw scene_.error_at(
+                "/hierarchy/levels",
+                fmt::format("the finest level would have {:.3g} faces, more than {:.3g}", faces, most),
+                "give fewer levels: by the source loop each has four times the faces of the one before");
     }
 
     /// Where everything stands when the run begins: obstacles are where their script has them at t = 0.

@@ -10,7 +10,7 @@ namespace plisse {
 ///
 /// Throws InputError for meshes that cannot be used (unreadable, non-manifold, degenerate, of the wrong connectivity,
 /// intersecting at rest or at the start; pairs of two obstacles do not count), for selections that select nothing, and
-/// for handles that prescribe the same axis of a vertex.
+/// for handles that prescribe the same axis of a vertex, and for more levels by subdivision than memory could hold.
 Model build_model(const Scene& scene, Context& context);
 
 } // namespace plisse

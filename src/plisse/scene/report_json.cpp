@@ -128,6 +128,7 @@ Json refinement_json(const RefinementReport& refinement) {
             {"sampled", refinement.sampled},
             {"relaxed", refinement.relaxed},
             {"deferred", refinement.deferred},
+            {"stopped", refinement.stopped},
             {"over_limit", refinement.over_limit},
             {"strain_limit_iterations", refinement.strain_limit_iterations},
             {"min_gap", finite_or_null(refinement.min_gap)},
@@ -144,6 +145,7 @@ RefinementReport refinement_from(const Json& json) {
     json.at("sampled").get_to(refinement.sampled);
     json.at("relaxed").get_to(refinement.relaxed);
     json.at("deferred").get_to(refinement.deferred);
+    json.at("stopped").get_to(refinement.stopped);
     json.at("over_limit").get_to(refinement.over_limit);
     json.at("strain_limit_iterations").get_to(refinement.strain_limit_iterations);
     refinement.min_gap = number_or_infinity(json.at("min_gap"));

@@ -59,17 +59,21 @@ inline const Choices<BendingModel>& choices_of(BendingModel) {
 }
 inline const Choices<ProlongationOperator>& choices_of(ProlongationOperator) {
     using P = ProlongationOperator;
-    static const Choices<P> all{
-        {{"shell", P::shell}, {"intrinsic", P::intrinsic}, {"blend", P::blend}, {"affine", P::affine}}, {"loop"}};
+    static const Choices<P> all{{{"shell", P::shell},
+                                 {"intrinsic", P::intrinsic},
+                                 {"blend", P::blend},
+                                 {"affine", P::affine},
+                                 {"loop", P::loop}},
+                                {}};
     return all;
 }
 inline const Choices<BendingOn>& choices_of(BendingOn) {
     static const Choices<BendingOn> all{{{"finest", BendingOn::finest}, {"level", BendingOn::level}}, {}};
     return all;
 }
-enum class HierarchySource { decimation };
 inline const Choices<HierarchySource>& choices_of(HierarchySource) {
-    static const Choices<HierarchySource> all{{{"decimation", HierarchySource::decimation}}, {"loop"}};
+    static const Choices<HierarchySource> all{
+        {{"decimation", HierarchySource::decimation}, {"loop", HierarchySource::loop}}, {}};
     return all;
 }
 inline const Choices<Curvature>& choices_of(Curvature) {
@@ -265,13 +269,24 @@ void describe(Visitor& v, ContactSpec& c) {
 
 template <typename Visitor>
 void describe(Visitor& v, HierarchySettings& h) {
-    v.field("levels", h.levels, Limits{1, 20}, "how many meshes: 3 means levels 0, 1 and 2, level 2 being the user's");
-    v.field("coarsest_vertices", h.coarsest_vertices, Limits{4, 1e9},
-            "vertices of level 0, over all bodies together; obstacles keep their own share");
-    v.field("operator", h.prolongation, "the prolongation");
+    v.field("source", h.source,
+            "where the levels come from: decimation makes coarser ones from the user's mesh, loop makes finer ones by "
+            "Loop's subdivision of bodies, boundaries fixed");
+    const bool by_loop = h.source == HierarchySource::loop;
+    if (by_loop && !v.lists_what_is_there())
+        h.prolongation = ProlongationOperator::loop;
+    v.field("levels", h.levels, Limits{1, 20},
+            "how many meshes: 3 means levels 0, 1 and 2; the user's is the finest, by source loop level 0");
+    v.field_if(!by_loop, "coarsest_vertices", h.coarsest_vertices, Limits{4, 1e9},
+               "vertices of level 0 by decimation, over all bodies together; obstacles keep their own share");
+    v.field("operator", h.prolongation, "the prolongation; left out, it is loop where the source is loop");
+    v.check(by_loop || h.prolongation != ProlongationOperator::loop, "operator",
+            "the operator loop needs levels made by subdivision",
+            "set `source` to \"loop\", which makes the mesh the coarsest level, or take another operator");
+    v.check(!by_loop || h.prolongation != ProlongationOperator::affine, "operator",
+            "the operator affine needs levels made by decimation",
+            "take loop, shell, blend or intrinsic, or set `source` to \"decimation\"");
     v.field("bending_on", h.bending_on, "the mesh that carries the bending energy in previews");
-    HierarchySource source = HierarchySource::decimation;
-    v.field("source", source, "where the levels come from");
 }
 
 template <typename Visitor>

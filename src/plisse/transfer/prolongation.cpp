@@ -68,17 +68,31 @@ Positions without_weights(const ProlongationWeights& weights, const Positions& f
     return result;
 }
 
-/// Each fine vertex's own, one group each.
-Stencils stencils_of(const ProlongationWeights& weights) {
+/// One group for the fine vertices of a face: what any of them depends on, which is much the same. One each for those
+/// without an anchor.
+Stencils stencils_of(const ProlongationWeights& weights, const std::vector<Anchor>& anchors, std::size_t faces) {
     Stencils stencils;
+    std::vector<int> group_of_face(faces, -1);
+    std::vector<std::vector<int>> groups;
     for (int i = 0; i < weights.rows(); ++i) {
-        for (ProlongationWeights::InnerIterator entry(weights, i); entry; ++entry)
-            stencils.coarse.push_back(static_cast<int>(entry.col()));
-        const int end = static_cast<int>(stencils.coarse.size());
-        const bool any = end > stencils.starts.back();
-        stencils.group_of.push_back(any ? static_cast<int>(stencils.starts.size()) - 1 : -1);
-        if (any)
-            stencils.starts.push_back(end);
+        const int face = anchors[at(i)].face;
+        int group = face < 0 ? -1 : group_of_face[at(face)];
+        for (ProlongationWeights::InnerIterator entry(weights, i); entry; ++entry) {
+            if (group < 0) {
+                group = static_cast<int>(groups.size());
+                groups.emplace_back();
+                if (face >= 0)
+                    group_of_face[at(face)] = group;
+            }
+            groups[at(group)].push_back(static_cast<int>(entry.col()));
+        }
+        stencils.group_of.push_back(weights.outerIndexPtr()[i] == weights.outerIndexPtr()[i + 1] ? -1 : group);
+    }
+    for (std::vector<int>& group : groups) {
+        std::sort(group.begin(), group.end());
+        group.erase(std::unique(group.begin(), group.end()), group.end());
+        stencils.coarse.insert(stencils.coarse.end(), group.begin(), group.end());
+        stencils.starts.push_back(static_cast<int>(stencils.coarse.size()));
     }
     return stencils;
 }
@@ -88,7 +102,7 @@ Stencils stencils_of(const ProlongationWeights& weights) {
 Prolongation::Prolongation(ProlongationWeights weights, const std::vector<Face>& coarse_faces,
                            std::vector<Anchor> anchors, const Positions& fine_rest)
     : anchors_(std::move(anchors)), barycentric_(barycentric_weights(anchors_, coarse_faces, weights.cols())),
-      weights_(std::move(weights)), unanchored_(without_weights(weights_, fine_rest)), stencils_(stencils_of(weights_)),
+      weights_(std::move(weights)), unanchored_(without_weights(weights_, fine_rest)), stencils_(stencils_of(weights_, anchors_, coarse_faces.size())),
       arm_starts_(anchors_.size() + 1, 0) {
     assert(anchors_.size() == static_cast<std::size_t>(weights_.rows()));
 }
@@ -99,7 +113,7 @@ Prolongation::Prolongation(const Positions& coarse_rest, std::vector<Face> coars
       weights_(barycentric_), unanchored_(without_weights(weights_, fine_rest)),
       coarse_faces_(std::move(coarse_faces)) {
     assert(anchors_.size() == static_cast<std::size_t>(fine_rest.cols()));
-    assert(kind != ProlongationOperator::affine);
+    assert(kind != ProlongationOperator::affine && kind != ProlongationOperator::loop);
     for (const Face& face : coarse_faces_) {
         const Vec3 origin = coarse_rest.col(face[0]);
         rest_inverse_.push_back(
