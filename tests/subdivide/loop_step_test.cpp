@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <plisse/mesh/generate.h>
 
 namespace plisse {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
 
 #include <plisse/base/random.h>
 #include <plisse/decimate/hierarchy_statistics.h>
@@ -144,7 +147,7 @@ TEST(Subdivide, TendsToLoopsLimitSurface) {
                 sum += mesh.positions.col(edge[0] == v ? edge[1] : edge[0]);
                 ++n;
             }
-        const double c = 3.0 / 8 + std::cos(2 * M_PI / n) / 4, b = (5.0 / 8 - c * c) / n;
+        const double c = 3.0 / 8 + std::cos(2 * std::numbers::pi / n) / 4, b = (5.0 / 8 - c * c) / n;
         const double w = 3 / (8 * b);
         const Vec3 limit = (w * mesh.positions.col(v) + sum) / (w + n);
         EXPECT_LT((hierarchy.finest().rest.col(v) - limit).norm(), 1e-3);

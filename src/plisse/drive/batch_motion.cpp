@@ -162,10 +162,10 @@ BatchMotionResult move_batch(ExpandingMesh& mesh, const std::vector<int>& record
 
     std::vector<int> stopped(clusters.size());
     parallel_for(static_cast<int>(clusters.size()), 1, [&](int c) {
-        std::vector<int> movers;
+        std::vector<int> vertices;
         for (int r : clusters[at(c)].records)
-            movers.insert(movers.end(), {batch[at(r)]->i, batch[at(r)]->j});
-        stopped[at(c)] = move_apart(mesh.positions(), mesh.targets(), mesh.rest(), movers, clusters[at(c)].pairs,
+            vertices.insert(vertices.end(), {batch[at(r)]->i, batch[at(r)]->j});
+        stopped[at(c)] = move_apart(mesh.positions(), mesh.targets(), mesh.rest(), vertices, clusters[at(c)].pairs,
                                     {options.reference_gap, 0});
     });
 
