@@ -12,7 +12,7 @@ namespace plisse {
 
 namespace {
 
-/// Found on a twisted cloth: a finer grain takes more rounds and ends no nearer to the targets.
+/// The whole mesh moves at once: a finer grain would take a round for each pair that is in the way.
 constexpr double grain = 1.0 / 64;
 
 std::vector<MovingPair> pairs_of(const Candidates& candidates) {
