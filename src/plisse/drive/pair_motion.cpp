@@ -116,7 +116,7 @@ private:
     int stop(double limit) {
         int stopped = 0;
         for (const Motion& motion : motions_)
-            if (motion.limit <= limit * (1 + same) + grain_)
+            if (motion.limit < 1 && motion.limit <= limit * (1 + same) + grain_)
                 for (int mover : motion.movers)
                     if (mover >= 0 && !remaining_[at(mover)].isZero(0)) {
                         remaining_[at(mover)].setZero();

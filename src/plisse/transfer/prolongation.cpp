@@ -102,8 +102,8 @@ Stencils stencils_of(const ProlongationWeights& weights, const std::vector<Ancho
 Prolongation::Prolongation(ProlongationWeights weights, const std::vector<Face>& coarse_faces,
                            std::vector<Anchor> anchors, const Positions& fine_rest)
     : anchors_(std::move(anchors)), barycentric_(barycentric_weights(anchors_, coarse_faces, weights.cols())),
-      weights_(std::move(weights)), unanchored_(without_weights(weights_, fine_rest)), stencils_(stencils_of(weights_, anchors_, coarse_faces.size())),
-      arm_starts_(anchors_.size() + 1, 0) {
+      weights_(std::move(weights)), unanchored_(without_weights(weights_, fine_rest)),
+      stencils_(stencils_of(weights_, anchors_, coarse_faces.size())), arm_starts_(anchors_.size() + 1, 0) {
     assert(anchors_.size() == static_cast<std::size_t>(weights_.rows()));
 }
 
