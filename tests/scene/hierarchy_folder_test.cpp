@@ -99,7 +99,7 @@ TEST(VerifyHierarchy, HoldsForADecimationAndFailsForABrokenMap) {
     missing.levels[0].to_finest[7].face = -1;
     EXPECT_FALSE(verify_hierarchy(missing)[0].holds());
     Hierarchy one_way = hierarchy;
-    one_way.levels[0].on_finest[3].face = -1;
+    one_way.levels[0].on_input[3].face = -1;
     EXPECT_FALSE(verify_hierarchy(one_way)[0].holds());
     EXPECT_EQ(verify_hierarchy(one_way)[0].missing_ways_back, 1);
     Hierarchy crossed = hierarchy;

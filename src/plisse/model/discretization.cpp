@@ -239,13 +239,13 @@ Positions Discretization::start(int level) const {
         x.leftCols(of_bodies) = model_.start.leftCols(of_bodies);
         return x;
     }
-    return hierarchy_.is_subdivided() ? subdivided_start(level) : restricted_start(level);
+    return hierarchy().is_subdivided() ? subdivided_start(level) : restricted_start(level);
 }
 
 Positions Discretization::subdivided_start(int level) const {
     Positions x = start_on_input_;
     for (int l = 0; l < level; ++l)
-        x = subdivided_positions(hierarchy_, l, x);
+        x = subdivided_positions(hierarchy(), l, x);
     return x;
 }
 

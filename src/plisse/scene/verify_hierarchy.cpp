@@ -111,12 +111,26 @@ Positions images_on(const HierarchyLevel& level, const HierarchyLevel& finest) {
     return images;
 }
 
-void measure_return(const HierarchyLevel& level, const HierarchyLevel& finest, double diagonal,
-                    LevelVerification& result) {
+/// Of the vertices of a level, on the finest: by subdivision they are among the finest level's vertices.
+std::vector<Anchor> places_on_finest(const Hierarchy& hierarchy, const HierarchyLevel& level) {
+    if (!hierarchy.is_subdivided())
+        return level.on_input;
+    std::vector<Anchor> places(static_cast<std::size_t>(level.rest.cols()));
+    const std::vector<Face>& faces = hierarchy.finest().faces;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const auto v = static_cast<std::size_t>(faces[f][k]); v < places.size())
+                places[v] = {static_cast<int>(f), Vec3::Unit(static_cast<int>(k))};
+    return places;
+}
+
+/// places: of the level's vertices, on the finest level.
+void measure_return(const HierarchyLevel& level, const HierarchyLevel& finest, const std::vector<Anchor>& places,
+                    double diagonal, LevelVerification& result) {
     const Positions images = images_on(level, finest);
     int returned = 0;
-    for (std::size_t v = 0; v < level.on_finest.size(); ++v) {
-        const Anchor& anchor = level.on_finest[v];
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        const Anchor& anchor = places[v];
         if (anchor.face < 0) {
             ++result.missing_ways_back;
             continue;
@@ -201,9 +215,10 @@ std::vector<LevelVerification> verify_hierarchy(const Hierarchy& hierarchy) {
         measure_weights(level, finest, result);
         measure_coincidences(level, result);
         measure_folds(level, finest, result);
-        measure_return(level, finest, diagonal, result);
+        const std::vector<Anchor> places = places_on_finest(hierarchy, level);
+        measure_return(level, finest, places, diagonal, result);
         result.distance = std::max(Surface(level).largest_distance(finest.rest, level.to_finest),
-                                   finest_surface.largest_distance(level.rest, level.on_finest)) /
+                                   finest_surface.largest_distance(level.rest, places)) /
                           diagonal;
         result.new_intersections = std::max(0, count_intersections(level) - intersections);
     }
