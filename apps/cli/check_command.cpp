@@ -76,6 +76,7 @@ Json counts_json(const MeshCheck& check) {
             {"components", check.components},
             {"boundary_loops", check.boundary_loops},
             {"euler_characteristic", check.euler_characteristic},
+            {"sheets", check.sheets},
             {"unreferenced_vertices", check.unreferenced_vertices},
             {"non_manifold_edges", check.non_manifold_edges.size()},
             {"inconsistent_edges", check.inconsistent_edges.size()},
@@ -132,6 +133,8 @@ void print_text(const std::vector<CheckedMesh>& meshes, const std::vector<Meetin
                    c.degenerate_faces.size(), c.duplicate_faces.size(), c.intersecting_faces.size());
         for (const std::string& note : mesh.read.notes)
             fmt::print("  note: {}\n", note);
+        if (!c.non_manifold_edges.empty())
+            fmt::print("  {} sheets are joined at the non-manifold edges: a body may be so\n", c.sheets);
         for (const std::string& finding : describe_findings(c, mesh.read.mesh))
             fmt::print("  {}\n", finding);
     }

@@ -72,6 +72,9 @@ Json level_json(int number, const LevelStatistics& s, const DecimationSummary& s
             {"components", s.topology.components},
             {"boundary_loops", s.topology.boundary_loops},
             {"euler_characteristic", s.topology.euler_characteristic},
+            {"sheets", s.topology.graph.sheets},
+            {"curves", s.topology.graph.curves},
+            {"curve_corners", s.topology.graph.corners},
             {"quality", {{"worst", s.worst_quality}, {"mean", s.mean_quality}, {"median", s.median_quality}}},
             {"map_error", {{"mean", s.mean_map_error}, {"largest", s.largest_map_error}}}};
 }

@@ -60,6 +60,16 @@ void append_crumpled(Scene& scene, Random& random) {
     });
 }
 
+/// Leaves at one spine, crumpled, so that they are near each other along it.
+void append_book(Scene& scene, Random& random) {
+    const double angle = random.uniform(0.1, 1);
+    scene.append_book(3 + random.below(2), 3, [&](int leaf, double u, double v) -> Vec3 {
+        return Vec3(0.4 * u * std::cos(angle * leaf), 0.4 * u * std::sin(angle * leaf), v) +
+               0.03 * random_points(random, 1, 1).col(0);
+    });
+    scene.append_sheet(3, [&](double u, double v) { return Vec3(0.5 * u - 0.3, 0.02 - 0.1 * u, v); });
+}
+
 /// Layers on top of each other, exactly parallel to each other, some with the same grid, the lowest an obstacle.
 void append_layers(Scene& scene, Random& random) {
     const double step = random.uniform(0.01, 0.1);
@@ -73,7 +83,7 @@ void append_layers(Scene& scene, Random& random) {
 Configuration configuration(int number) {
     Random random(static_cast<std::uint64_t>(number));
     constexpr std::array kinds = {std::pair("soup", &append_soup), std::pair("crumpled", &append_crumpled),
-                                  std::pair("layers", &append_layers)};
+                                  std::pair("layers", &append_layers), std::pair("book", &append_book)};
     const auto& [name, append] = kinds[static_cast<std::size_t>(number) % kinds.size()];
     Configuration c{name + std::string(" ") + std::to_string(number), {}, {}, {}, random.uniform(0.01, 0.08), false};
     append(c.scene, random);

@@ -171,8 +171,8 @@ private:
         return place;
     }
 
-    /// Faces, less edges of two faces, plus vertices as often as that makes up for. Those at a face out of reach are
-    /// out of reach too.
+    /// Faces, less edges for each face but one, plus vertices as often as that makes up for. Those at a face out of
+    /// reach are out of reach too.
     template <typename Visit>
     void visit_point(int v, const Positions& x, const Visit& call) const {
         struct Counted {
@@ -203,11 +203,11 @@ private:
             }
         }
         for (auto& [corners, counted] : edges)
-            if (counted.faces == 2) {
+            if (counted.faces >= 2) {
                 for (const int w : corners)
-                    ++vertices[{w}].inner_edges;
+                    vertices[{w}].inner_edges += counted.faces - 1;
                 counted.place.vertices = {v, corners[0], corners[1], corners[1]};
-                counted.place.count = -1;
+                counted.place.count = 1 - counted.faces;
                 call(counted.place);
             }
         for (auto& [corners, counted] : vertices) {

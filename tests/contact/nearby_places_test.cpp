@@ -89,6 +89,25 @@ TEST(NearbyPlaces, OfAFoldAreBothFacesLessTheirEdge) {
     EXPECT_EQ(sum, 1);
 }
 
+/// On a floor with a wall below it, and above one of its own.
+TEST(NearbyPlaces, OfAJointAreTheFaceBelowOrBothFacesLessTheEdge) {
+    Positions x(3, 5);
+    x << 0, 0, 1, -1, 0, /**/ 0, 0, 0, 0, -1, /**/ 0, 1, 0.5, 0.5, 0.5;
+    const std::vector<Face> faces = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}};
+    for (double side : {0.02, -0.02, 0.0}) {
+        const auto above = Pointed(x, faces, Vec3(side, 0.2, 0.5)).places(0.5);
+        ASSERT_EQ(above.size(), 1U);
+        EXPECT_EQ(above[0].count, 1);
+        EXPECT_NEAR(above[0].separation.squared_distance, 0.04, 1e-14);
+    }
+    int sum = 0;
+    for (const NearPlace& place : Pointed(x, faces, Vec3(0.1, -0.1, 0.5)).places(0.5)) {
+        sum += place.count;
+        EXPECT_NEAR(place.separation.squared_distance, place.count > 0 ? 0.01 : 0.02, 1e-14);
+    }
+    EXPECT_EQ(sum, 1);
+}
+
 TEST(NearbyPlaces, AreOneBesideTheRimToo) {
     const Pointed beside = fan(0, Vec3(1.1, 0.1, 0.05));
     const auto places = beside.places(0.5);

@@ -48,6 +48,27 @@ struct Scene {
         append(points, sheet, is_obstacle);
     }
 
+    /// Leaves of n x n cells at one spine, every second turned the other way; point(leaf, u, v), the spine at u = 0.
+    template <typename Point>
+    void append_book(int leaves, int n, const Point& point) {
+        Positions points(3, (n + 1) * (leaves * n + 1));
+        std::vector<Face> book;
+        const auto at = [&](int leaf, int i, int j) { return (i == 0 ? 0 : leaf * n + i) * (n + 1) + j; };
+        for (int leaf = 0; leaf < leaves; ++leaf)
+            for (int i = leaf == 0 ? 0 : 1; i <= n; ++i)
+                for (int j = 0; j <= n; ++j)
+                    points.col(at(leaf, i, j)) = point(leaf, static_cast<double>(i) / n, static_cast<double>(j) / n);
+        for (int leaf = 0; leaf < leaves; ++leaf)
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) {
+                    const int a = at(leaf, i, j), b = at(leaf, i + 1, j), c = at(leaf, i + 1, j + 1),
+                              d = at(leaf, i, j + 1);
+                    book.push_back(leaf % 2 == 0 ? Face{a, b, c} : Face{a, c, b});
+                    book.push_back(leaf % 2 == 0 ? Face{a, c, d} : Face{a, d, c});
+                }
+        append(points, book, false);
+    }
+
     CollisionMesh mesh(const Positions& rest) const { return {rest, faces, part, obstacle}; }
     CollisionMesh mesh() const { return mesh(x); }
 };

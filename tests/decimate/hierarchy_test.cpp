@@ -46,24 +46,25 @@ protected:
     DecimationSummary summary_;
 };
 
-std::set<Edge> boundary_edges(const HierarchyLevel& level) {
+/// Those with a number of faces: 1 is the boundary.
+std::set<Edge> curve_edges(const HierarchyLevel& level, std::size_t faces) {
     const Connectivity connectivity(static_cast<int>(level.rest.cols()), level.faces);
     std::set<Edge> edges;
     for (int e = 0; e < connectivity.edge_count(); ++e)
-        if (connectivity.is_boundary_edge(e))
+        if (connectivity.edge_faces(e).size() == faces)
             edges.insert(connectivity.edges()[e]);
     return edges;
 }
 
-std::set<int> boundary_vertices(const HierarchyLevel& level) {
+std::set<int> ends_of(const std::set<Edge>& edges) {
     std::set<int> vertices;
-    for (const Edge& edge : boundary_edges(level))
+    for (const Edge& edge : edges)
         vertices.insert(edge.begin(), edge.end());
     return vertices;
 }
 
-bool on_boundary(const Anchor& anchor, const HierarchyLevel& coarse, const std::set<Edge>& edges,
-                 const std::set<int>& vertices) {
+bool on_curve(const Anchor& anchor, const HierarchyLevel& coarse, const std::set<Edge>& edges,
+              const std::set<int>& vertices) {
     std::vector<int> support;
     for (int c = 0; c < 3; ++c)
         if (anchor.weights[c] != 0)
@@ -76,20 +77,22 @@ bool on_boundary(const Anchor& anchor, const HierarchyLevel& coarse, const std::
 
 void expect_sound(const std::vector<Anchor>& anchors, const HierarchyLevel& coarse, const HierarchyLevel& fine) {
     ASSERT_EQ(static_cast<Eigen::Index>(anchors.size()), fine.rest.cols());
-    const std::set<Edge> coarse_edges = boundary_edges(coarse);
-    const std::set<int> coarse_vertices = boundary_vertices(coarse), fine_vertices = boundary_vertices(fine);
     for (std::size_t v = 0; v < anchors.size(); ++v) {
         ASSERT_GE(anchors[v].face, 0);
         ASSERT_LT(anchors[v].face, static_cast<int>(coarse.faces.size()));
         EXPECT_GE(anchors[v].weights.minCoeff(), 0);
         EXPECT_NEAR(anchors[v].weights.sum(), 1, 1e-15);
         EXPECT_EQ(coarse.part[coarse.faces[anchors[v].face][0]], fine.part[v]);
-        const bool must = fine_vertices.contains(static_cast<int>(v));
-        EXPECT_TRUE(!must || on_boundary(anchors[v], coarse, coarse_edges, coarse_vertices)) << "vertex " << v;
+    }
+    for (std::size_t faces : {1U, 3U, 4U}) {
+        const std::set<Edge> coarse_edges = curve_edges(coarse, faces);
+        const std::set<int> coarse_vertices = ends_of(coarse_edges);
+        for (int v : ends_of(curve_edges(fine, faces)))
+            EXPECT_TRUE(on_curve(anchors[v], coarse, coarse_edges, coarse_vertices)) << "vertex " << v;
     }
 }
 
-TEST_P(HierarchyProperties, anchors_are_convex_and_keep_the_boundary) {
+TEST_P(HierarchyProperties, anchors_are_convex_and_keep_the_curves) {
     EXPECT_EQ(summary_.location_errors, 0);
     EXPECT_GT(summary_.worst_location, -1e-9);
     for (int l = 0; l < coarse_count(); ++l) {
@@ -114,6 +117,7 @@ TEST_P(HierarchyProperties, topology_stays) {
         EXPECT_EQ(coarse.topology.euler_characteristic, statistics.back().topology.euler_characteristic);
         EXPECT_EQ(coarse.topology.boundary_loops, statistics.back().topology.boundary_loops);
         EXPECT_EQ(coarse.topology.components, statistics.back().topology.components);
+        EXPECT_EQ(coarse.topology.graph, statistics.back().topology.graph);
     }
     EXPECT_EQ(hierarchy_.finest().faces, mesh_.faces);
     EXPECT_EQ(hierarchy_.finest().rest, mesh_.rest);
@@ -225,7 +229,12 @@ INSTANTIATE_TEST_SUITE_P(Meshes, HierarchyProperties,
                                          Case{"annulus", [] { return test::annulus(36, 8); }, 50, 0.05},
                                          Case{"holes", [] { return test::square(16, 0, {}, in_hole); }, 60, 1e-12},
                                          Case{"scene", [] { return test::scene(); }, 110, 0.03},
-                                         Case{"two_triangles", [] { return test::triangles(2); }, 4, 1e-16}),
+                                         Case{"two_triangles", [] { return test::triangles(2); }, 4, 1e-16},
+                                         Case{"rib_across", [] { return test::rib_panel(16, 0, 16, 0.25); }, 40, 1e-12},
+                                         Case{"rib_inside", [] { return test::rib_panel(16, 3, 13, 0.25); }, 40, 1e-12},
+                                         Case{"rib_at_a_corner", [] { return test::rib_panel(16, 0, 9); }, 40, 1e-12},
+                                         Case{"honeycomb", [] { return test::honeycomb(8, 12); }, 60, 1e-12},
+                                         Case{"crossed", [] { return test::crossed_sheets(10); }, 60, 0.05}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
 } // namespace

@@ -143,8 +143,9 @@ TEST(JointFlattening, gives_a_flat_patch_back) {
         return Vec2(d.dot(along), along.x() * d.y() - along.y() * d.x()) / along.squaredNorm();
     };
     EXPECT_LT((chart.k - expected(k)).norm(), 1e-12);
-    for (std::size_t n = 0; n < patch.ring.size(); ++n)
-        EXPECT_LT((chart.ring[n] - expected(patch.ring[n])).norm(), 1e-12);
+    EXPECT_EQ(patch.places, patch.ring);
+    for (std::size_t n = 0; n < patch.places.size(); ++n)
+        EXPECT_LT((chart.ring[n] - expected(patch.places[n])).norm(), 1e-12);
 }
 
 TEST(JointFlattening, keeps_a_straight_boundary_straight) {
@@ -155,7 +156,7 @@ TEST(JointFlattening, keeps_a_straight_boundary_straight) {
     const DynamicFaces faces(mesh.faces, k + 1);
     Patch patch;
     patch.gather(faces, i, j, k);
-    ASSERT_TRUE(patch.is_boundary_edge());
+    ASSERT_TRUE(patch.is_curve_edge());
     EXPECT_EQ(patch.beyond_i, 1);
     EXPECT_EQ(patch.beyond_j, 4);
     JointFlattening flattening;
@@ -164,17 +165,51 @@ TEST(JointFlattening, keeps_a_straight_boundary_straight) {
     ASSERT_TRUE(flattening.flatten(patch, faces, rest, Alias::j, chart));
     EXPECT_EQ(chart.k, Vec2(1, 0));
     EXPECT_EQ(chart.alias, Alias::j);
-    EXPECT_EQ(chart.ring[patch.ring_index(1)].y(), 0);
+    EXPECT_EQ(chart.ring[patch.place(0, 1)].y(), 0);
 }
 
-TEST(DynamicFaces, tells_rings_and_boundary) {
+/// Along a joint, every sheet has a plane of its own but the same place for what is on the curve.
+TEST(JointFlattening, lays_a_joint_on_one_line_in_all_sheets) {
+    const test::TestMesh mesh = test::crossed_sheets(6);
+    const auto at_height = [&](int n) { // vertices of the joint
+        const double z = 2.0 * n / 12;
+        const Vec3 place(0.1 * std::sin(2 * z), 0.1 * std::cos(3 * z), z);
+        for (int v = 0; v < mesh.count(); ++v)
+            if ((mesh.points[v] - place).norm() < 1e-9)
+                return v;
+        return -1;
+    };
+    const int i = at_height(5), j = at_height(6), k = mesh.count();
+    Positions rest(3, k + 1);
+    rest << mesh.rest, 0.5 * (mesh.points[i] + mesh.points[j]);
+    const DynamicFaces faces(mesh.faces, k + 1);
+    Patch patch;
+    patch.gather(faces, i, j, k);
+    EXPECT_EQ(patch.dead_faces.size(), 4U);
+    EXPECT_EQ(patch.sheet_count, 4);
+    EXPECT_EQ(patch.beyond_i, at_height(4));
+    EXPECT_EQ(patch.beyond_j, at_height(7));
+    JointFlattening flattening;
+    Chart chart;
+    for (Alias alias : {Alias::none, Alias::i, Alias::j}) {
+        ASSERT_TRUE(flattening.flatten(patch, faces, rest, alias, chart));
+        for (int sheet = 0; sheet < 4; ++sheet) {
+            if (chart.alias != Alias::i)
+                EXPECT_EQ(chart.ring[patch.place(sheet, patch.beyond_i)], chart.ring[patch.place(0, patch.beyond_i)]);
+            if (chart.alias != Alias::j)
+                EXPECT_EQ(chart.ring[patch.place(sheet, patch.beyond_j)], chart.ring[patch.place(0, patch.beyond_j)]);
+        }
+    }
+}
+
+TEST(DynamicFaces, tells_rings_and_curves) {
     const test::TestMesh mesh = test::square(2);
     const DynamicFaces faces(mesh.faces, mesh.count() + 3);
     std::vector<int> ring;
     faces.ring(0, ring);
     EXPECT_EQ(ring, (std::vector<int>{1, 3, 4}));
-    EXPECT_TRUE(faces.is_boundary_edge(0, 1));
-    EXPECT_FALSE(faces.is_boundary_edge(0, 4));
+    EXPECT_TRUE(faces.is_curve_edge(0, 1));
+    EXPECT_FALSE(faces.is_curve_edge(0, 4));
     EXPECT_FALSE(faces.has_vertex(mesh.count()));
 }
 

@@ -31,22 +31,22 @@ double worst_return(const test::TestMesh& mesh) {
     DecimationSummary summary;
     const CollapseSequence sequence = EdgeCollapser(mesh.input(), options_to(40), summary).run(nullptr);
     const int ids = static_cast<int>(sequence.vertices.size());
-    std::vector<bool> on_boundary;
+    std::vector<bool> on_curve;
     for (const VertexState& state : sequence.vertices)
-        on_boundary.push_back(state.on_boundary);
+        on_curve.push_back(state.on_curve);
     DynamicFaces faces(mesh.faces, ids);
     std::vector<int> all(mesh.points.size());
     std::iota(all.begin(), all.end(), 0);
     PointCarrier carrier(all, ids, faces.face_id_count());
     ChartTriangles triangles;
     for (std::size_t c = 0; c < sequence.collapses.size(); ++c) {
-        triangles.lay_out(sequence.collapses[c], sequence.charts[c], faces, on_boundary);
+        triangles.lay_out(sequence.collapses[c], sequence.charts[c], faces, on_curve);
         carrier.carry(sequence.collapses[c], sequence.charts[c], triangles);
         faces.collapse(sequence.collapses[c]);
     }
     for (std::size_t c = sequence.collapses.size(); c-- > 0;) {
         faces.expand(sequence.collapses[c]);
-        triangles.lay_out(sequence.collapses[c], sequence.charts[c], faces, on_boundary);
+        triangles.lay_out(sequence.collapses[c], sequence.charts[c], faces, on_curve);
         carrier.carry_back(sequence.collapses[c], sequence.charts[c], triangles);
     }
     EXPECT_GT(sequence.collapses.size(), mesh.points.size() / 2);
@@ -60,6 +60,9 @@ double worst_return(const test::TestMesh& mesh) {
 TEST(PointCarrier, brings_points_back_where_they_were) {
     EXPECT_LT(worst_return(test::sphere(30, 21)), 1e-9);
     EXPECT_LT(worst_return(test::scene()), 1e-9);
+    EXPECT_LT(worst_return(test::rib_panel(20, 4, 16, 0.25)), 1e-9);
+    EXPECT_LT(worst_return(test::honeycomb(8, 12)), 1e-9);
+    EXPECT_LT(worst_return(test::crossed_sheets(10)), 1e-9);
 }
 
 TEST(OnFinest, lies_on_the_surface_near_the_vertex_and_on_it_where_it_was_kept) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -47,6 +48,47 @@ struct TestMesh {
             for (int& v : face)
                 v = number[v];
         points = kept;
+    }
+
+    /// Makes points at the same place one.
+    void weld() {
+        std::vector<int> number;
+        std::vector<Vec3> kept;
+        for (const Vec3& point : points) {
+            const auto same = std::find_if(kept.begin(), kept.end(),
+                                           [&](const Vec3& other) { return (other - point).norm() < 1e-9; });
+            number.push_back(static_cast<int>(same - kept.begin()));
+            if (same == kept.end())
+                kept.push_back(point);
+        }
+        for (Face& face : faces)
+            for (int& v : face)
+                v = number[v];
+        points = kept;
+    }
+
+    /// Adds a sheet of n x m cells spanned by two directions; points at the same place become one.
+    TestMesh& add_wall(const Vec3& origin, const Vec3& along, const Vec3& up, int n, int m) {
+        const int first = count();
+        for (int b = 0; b <= m; ++b)
+            for (int a = 0; a <= n; ++a)
+                points.push_back(origin + along * a / n + up * b / m);
+        const auto at = [&](int a, int b) { return first + b * (n + 1) + a; };
+        for (int b = 0; b < m; ++b)
+            for (int a = 0; a < n; ++a) {
+                const bool turned = (a + b) % 2 != 0;
+                faces.push_back({at(a, b), at(a + 1, b), at(a + (turned ? 0 : 1), b + 1)});
+                faces.push_back({at(turned ? a + 1 : a, b), at(a + 1, b + 1), at(a, b + 1)});
+            }
+        weld();
+        return *this;
+    }
+
+    /// Turns every face of the part that a predicate of the face's middle picks the other way.
+    void turn(const std::function<bool(const Vec3&)>& picks) {
+        for (Face& face : faces)
+            if (picks((points[face[0]] + points[face[1]] + points[face[2]]) / 3))
+                std::swap(face[1], face[2]);
     }
 
     /// Adds another mesh as the next part, moved.
@@ -158,6 +200,45 @@ inline TestMesh triangles(int count) {
         mesh.points.push_back({1, 1, 0});
         mesh.faces.push_back({1, 3, 2});
     }
+    return mesh.finish();
+}
+
+/// A square panel of n x n cells with a rib on it, from y = begin to end (in cells) and n/4 cells high, that turns the
+/// other way than the panel does on one of its sides, as it must.
+inline TestMesh rib_panel(int n, int begin, int end, double jitter = 0) {
+    TestMesh mesh;
+    mesh.add_wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, n, n);
+    const double cell = 1.0 / n;
+    mesh.add_wall({0.5, begin * cell, 0}, {0, (end - begin) * cell, 0}, {0, 0, 0.25}, end - begin, n / 4);
+    Random random(7);
+    for (Vec3& p : mesh.points) {
+        const bool at_rib = p.x() == 0.5 && p.y() > begin * cell - 1e-9 && p.y() < end * cell + 1e-9;
+        if (p.z() == 0 && !at_rib && p.x() > 0 && p.x() < 1 && p.y() > 0 && p.y() < 1)
+            p += jitter * cell * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    }
+    return mesh.finish();
+}
+
+/// A cell of a honeycomb: six walls around it, and six between its neighbours, with three walls at each of its edges.
+inline TestMesh honeycomb(int n, int m) {
+    TestMesh mesh;
+    const auto corner = [](int k) {
+        return Vec3(std::cos(k * std::numbers::pi / 3), std::sin(k * std::numbers::pi / 3), 0);
+    };
+    for (int k = 0; k < 6; ++k) {
+        mesh.add_wall(corner(k), corner(k + 1) - corner(k), {0, 0, 1.5}, n, m);
+        mesh.add_wall(corner(k), 0.5 * corner(k), {0, 0, 1.5}, n / 2, m);
+    }
+    return mesh.finish();
+}
+
+/// Four sheets at one line, the line curved, and the sheets wavy.
+inline TestMesh crossed_sheets(int n) {
+    TestMesh mesh;
+    for (int k = 0; k < 4; ++k)
+        mesh.add_wall({0, 0, 0}, {0, 0, 2}, {std::cos(k * 1.6), std::sin(k * 1.6), 0}, 2 * n, n);
+    for (Vec3& p : mesh.points)
+        p += Vec3(0.1 * std::sin(2 * p.z()), 0.1 * std::cos(3 * p.z()), 0.05 * std::sin(4 * p.x() + 3 * p.y()));
     return mesh.finish();
 }
 

@@ -263,6 +263,48 @@ TEST(HingeProjectionAtRest, IsExactInEveryKind) {
     }
 }
 
+// ---- joints
+
+TEST(HingeJoint, HasTheDerivativesOfItsValueWhicheverWayFacesTurn) {
+    for (int leaves : {3, 4})
+        for (int turned = 0; turned < 1 << leaves; ++turned) {
+            const TriangleMesh book = testing::turned_leaves(testing::make_book(leaves), turned);
+            const Positions x = perturbed(book.positions, 0.1);
+            const HingeEnergy energy = make_hinges(book, 1.7);
+            EXPECT_EQ(energy.element_count(), 2 * leaves * (leaves - 1) / 2 + 3 * leaves);
+            const auto errors = testing::derivative_errors(energy, x, 1);
+            EXPECT_LT(errors.gradient, 1e-7) << turned;
+            EXPECT_LT(errors.hessian, 1e-6) << turned;
+            EXPECT_NEAR(testing::total_value(energy, as_vector(x)),
+                        testing::total_value(make_hinges(testing::make_book(leaves), 1.7), as_vector(x)), 1e-13);
+            EXPECT_LT(testing::total_value(energy, as_vector(book.positions)), 1e-28);
+        }
+}
+
+/// Two faces fold about an edge that a rib stands on; nothing holds the rib, so it turns to where the energy is least.
+TEST(HingeJoint, AnUnloadedRibLeavesTheOthersTheirStiffness) {
+    TriangleMesh panel;
+    panel.positions.resize(3, 5);
+    panel.positions << 0, 1, 0.4, 0.7, 0.3, /**/ 0, 0, 0.8, -0.5, 0, /**/ 0, 0, 0, 0, 0.3;
+    panel.faces = {{0, 1, 2}, {1, 0, 3}};
+    TriangleMesh ribbed = panel;
+    ribbed.faces.push_back({0, 1, 4});
+    const auto bent = [&](double rib) {
+        Positions x = panel.positions;
+        const Mat3 fold = Eigen::AngleAxisd(0.2, Vec3::UnitX()).toRotationMatrix(),
+                   lean = Eigen::AngleAxisd(rib, Vec3::UnitX()).toRotationMatrix();
+        x.col(2) = fold * x.col(2);
+        x.col(4) = lean * x.col(4);
+        return as_vector(x);
+    };
+    const HingeEnergy alone = make_hinges(panel, 1), joint = make_hinges(ribbed, 1);
+    const auto energy = [&](double rib) { return testing::total_value(joint, bent(rib)); };
+    const double below = energy(-0.1), middle = energy(0), above = energy(0.1); // a parabola
+    const double least = middle - (above - below) * (above - below) / (8 * (above + below - 2 * middle));
+    EXPECT_NEAR(least, testing::total_value(alone, bent(0)), 1e-12 * least);
+    EXPECT_GT(middle, 1.001 * least);
+}
+
 // ---- edges
 
 TEST(InteriorHinges, KnowTheirFacesAndOrientation) {

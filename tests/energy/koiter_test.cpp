@@ -95,6 +95,31 @@ TEST(KoiterFaces, CopesWithCornersThatFacesShare) {
     EXPECT_LT(errors.hessian, 1e-6);
 }
 
+TEST(KoiterFaces, HasTheDerivativesOfItsValueAtJoints) {
+    for (int turned = 0; turned < 8; ++turned) {
+        const TriangleMesh book = testing::turned_leaves(testing::make_book(3), turned);
+        const auto errors = testing::derivative_errors(WithTurns(book), perturbed(book.positions, 0.1), 1);
+        EXPECT_LT(errors.gradient, 1e-7) << turned;
+        EXPECT_LT(errors.hessian, 1e-6) << turned;
+    }
+}
+
+/// Neither which way faces turn nor which of them comes first at a joint makes a difference.
+TEST(KoiterBending, KnowsNoFirstFaceOfAJoint) {
+    TriangleMesh book = testing::make_book(4);
+    const Positions x = perturbed(book.positions, 0.1);
+    const auto value = [&](const TriangleMesh& mesh) {
+        const KoiterBending bending(mesh.positions, mesh.faces, uniform_material(mesh));
+        EXPECT_LT(bending.value(mesh.positions), 1e-26);
+        return bending.value(x);
+    };
+    const double expected = value(book);
+    for (int turned = 1; turned < 16; ++turned)
+        EXPECT_NEAR(value(testing::turned_leaves(book, turned)), expected, 1e-12 * expected) << turned;
+    std::rotate(book.faces.begin(), book.faces.begin() + 5, book.faces.end());
+    EXPECT_NEAR(value(book), expected, 1e-12 * expected);
+}
+
 TEST(KoiterFaces, ProjectsToNoNegativeEigenvalue) {
     const TriangleMesh sheet = make_sheet(4, 4, 1, 1, Cells::random, 0.2);
     const VecX x = as_vector(perturbed(sheet.positions, 0.1));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -92,12 +93,42 @@ inline MembraneEnergy make_membrane(const TriangleMesh& mesh, const Lame& lame, 
 
 inline HingeEnergy make_hinges(const TriangleMesh& mesh, double scaled_rigidity, bool flat = false,
                                HingeHessian kind = HingeHessian::gauss_newton) {
-    const Hinges hinges = interior_hinges(Connectivity(mesh.vertex_count(), mesh.faces), mesh.faces);
-    const auto count = static_cast<std::size_t>(hinges.size());
+    const Connectivity connectivity(mesh.vertex_count(), mesh.faces);
+    const Hinges hinges = interior_hinges(connectivity, mesh.faces);
+    std::vector<double> rigidities = hinge_shares(hinges, connectivity, mesh.faces, mesh.positions);
+    for (double& rigidity : rigidities)
+        rigidity *= scaled_rigidity;
     return {mesh.positions,
             hinges.vertices,
-            {std::vector<double>(count, scaled_rigidity), std::vector<std::uint8_t>(count, flat ? 1 : 0)},
+            {rigidities, std::vector<std::uint8_t>(rigidities.size(), flat ? 1 : 0)},
             kind};
+}
+
+/// Leaves of two cells at one spine of two edges, at angles of 2 pi k/leaves and of different widths.
+inline TriangleMesh make_book(int leaves) {
+    TriangleMesh mesh;
+    mesh.positions.resize(3, 3 + 3 * leaves);
+    for (int j = 0; j < 3; ++j)
+        mesh.positions.col(j) = Vec3(0, 0, j);
+    for (int k = 0; k < leaves; ++k) {
+        const double angle = 2 * std::numbers::pi * k / leaves, width = 0.7 + 0.2 * k;
+        const int first = 3 + 3 * k;
+        for (int j = 0; j < 3; ++j)
+            mesh.positions.col(first + j) = Vec3(width * std::cos(angle), width * std::sin(angle), j + 0.1 * k);
+        for (int j = 0; j < 2; ++j) {
+            mesh.faces.push_back({j, first + j, first + j + 1});
+            mesh.faces.push_back({j, first + j + 1, j + 1});
+        }
+    }
+    return mesh;
+}
+
+/// The mesh with the faces of the leaves turned whose bit is set.
+inline TriangleMesh turned_leaves(TriangleMesh book, int bits) {
+    for (std::size_t f = 0; f < book.faces.size(); ++f)
+        if ((bits >> (f / 4) & 1) != 0)
+            std::swap(book.faces[f][1], book.faces[f][2]);
+    return book;
 }
 
 inline Positions perturbed(const Positions& x, double size, std::uint64_t seed = 3) {

@@ -31,10 +31,20 @@ TEST(CheckMesh, FindsNothingWrongWithAGoodMesh) {
     EXPECT_EQ(check.euler_characteristic, 2);
 }
 
-TEST(CheckMesh, FindsAnEdgeOfThreeFaces) {
-    const MeshCheck check = check_mesh(mesh_of(points, {{0, 1, 2}, {1, 0, 4}, {0, 1, 5}}));
+TEST(CheckMesh, AllowsAnEdgeOfThreeFacesWhicheverWayTheyTurn) {
+    const TriangleMesh mesh = mesh_of(points, {{0, 1, 2}, {0, 1, 4}, {0, 1, 5}});
+    const MeshCheck check = check_mesh(mesh);
     EXPECT_EQ(check.non_manifold_edges, (std::vector<Edge>{{0, 1}}));
+    EXPECT_EQ(check.sheets, 3);
+    EXPECT_TRUE(check.inconsistent_edges.empty());
     EXPECT_TRUE(check.non_manifold_vertices.empty());
+    EXPECT_TRUE(check.usable());
+    EXPECT_TRUE(describe_findings(check, mesh).empty());
+}
+
+TEST(CheckMesh, FindsAPinchBesideAnEdgeOfThreeFaces) {
+    const MeshCheck check = check_mesh(mesh_of(points, {{0, 1, 2}, {1, 0, 4}, {0, 1, 5}, {0, 6, 7}}));
+    EXPECT_EQ(check.non_manifold_vertices, std::vector<int>{0});
     EXPECT_FALSE(check.usable());
 }
 

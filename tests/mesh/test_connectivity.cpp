@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
-#include <plisse/mesh/connectivity.h>
 #include <plisse/mesh/generate.h>
+#include <plisse/mesh/sheet_graph.h>
 
 namespace plisse {
 namespace {
@@ -17,8 +18,12 @@ TEST(Connectivity, TellsTheRelationsOfTwoTriangles) {
     EXPECT_EQ(c.face_count(), 2);
     EXPECT_EQ(c.edges(), (std::vector<Edge>{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}}));
     EXPECT_EQ(c.face_edges(), (std::vector<std::array<int, 3>>{{0, 2, 1}, {2, 3, 4}}));
-    EXPECT_EQ(c.edge_faces(), (std::vector<std::array<int, 2>>{{0, -1}, {0, -1}, {0, 1}, {1, -1}, {1, -1}}));
-    EXPECT_EQ(c.opposite(), (std::vector<std::array<int, 2>>{{2, -1}, {1, -1}, {0, 3}, {2, -1}, {1, -1}}));
+    const std::vector<std::vector<int>> edge_faces = {{0}, {0}, {0, 1}, {1}, {1}},
+                                        opposite = {{2}, {1}, {0, 3}, {2}, {1}};
+    for (int e = 0; e < 5; ++e) {
+        EXPECT_TRUE(std::ranges::equal(c.edge_faces(e), edge_faces[static_cast<std::size_t>(e)])) << e;
+        EXPECT_TRUE(std::ranges::equal(c.opposite(e), opposite[static_cast<std::size_t>(e)])) << e;
+    }
     EXPECT_EQ(c.vertex_faces(1).size(), 2u);
     EXPECT_EQ(c.vertex_faces(3).front(), 1);
     EXPECT_TRUE(c.vertex_faces(4).empty());
@@ -27,11 +32,14 @@ TEST(Connectivity, TellsTheRelationsOfTwoTriangles) {
     EXPECT_TRUE(c.non_manifold_edges().empty());
 }
 
-TEST(Connectivity, ListsAnEdgeOfThreeOrMoreFacesOnce) {
+TEST(Connectivity, ListsAllFacesOfAnEdge) {
     const std::vector<Face> fins = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {1, 0, 5}};
     const Connectivity c(6, fins);
     EXPECT_EQ(c.non_manifold_edges(), std::vector<int>{0});
-    EXPECT_EQ(c.edge_faces()[0], (std::array<int, 2>{0, 1}));
+    EXPECT_TRUE(std::ranges::equal(c.edge_faces(0), std::vector<int>{0, 1, 2, 3}));
+    EXPECT_TRUE(std::ranges::equal(c.opposite(0), std::vector<int>{2, 3, 4, 5}));
+    EXPECT_TRUE(c.is_curve_edge(0));
+    EXPECT_FALSE(c.is_boundary_edge(0));
 }
 
 TEST(Connectivity, OfNothingIsEmpty) {
@@ -60,12 +68,10 @@ TEST(Connectivity, AgreesWithTheFaceListOfAWholeMesh) {
     ASSERT_EQ(c.edges().size(), faces_of_edge.size());
     for (std::size_t e = 0; e < c.edges().size(); ++e) {
         std::set<int> faces;
-        for (std::size_t side = 0; side < 2; ++side) {
-            const int f = c.edge_faces()[e][side];
-            const int apex = c.opposite()[e][side];
-            ASSERT_EQ(f < 0, apex < 0);
-            if (f < 0)
-                continue;
+        const auto sides = c.edge_faces(static_cast<int>(e));
+        for (std::size_t side = 0; side < sides.size(); ++side) {
+            const int f = sides[side];
+            const int apex = c.opposite(static_cast<int>(e))[side];
             faces.insert(f);
             const Face& face = mesh.faces[static_cast<std::size_t>(f)];
             EXPECT_EQ(apex + c.edges()[e][0] + c.edges()[e][1], face[0] + face[1] + face[2]);
@@ -103,6 +109,24 @@ TEST(BoundaryLoops, AreTwoOnAnAnnulusAndNoneOnASphere) {
     options.shape = GeneratorShape::sphere;
     const TriangleMesh sphere = generate_mesh(options);
     EXPECT_TRUE(boundary_loops(Connectivity(sphere.vertex_count(), sphere.faces), sphere.faces).empty());
+}
+
+TEST(BoundaryPieces, AreTheLoopsOfAManifoldAndOneWhereTheBoundaryBranches) {
+    EXPECT_EQ(boundary_pieces(Connectivity(4, two_triangles)), (std::vector<std::vector<int>>{{0, 1, 2, 3}}));
+    const std::vector<Face> book = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {5, 6, 7}};
+    EXPECT_EQ(boundary_pieces(Connectivity(8, book)), (std::vector<std::vector<int>>{{0, 1, 2, 3, 4}, {5, 6, 7}}));
+}
+
+TEST(SheetGraph, CountsSheetsCurvesAndCorners) {
+    EXPECT_EQ(sheet_graph(Connectivity(4, two_triangles)), (SheetGraph{1, 1, 0}));
+    // Three leaves at one edge: their borders and the edge run between its two ends.
+    const std::vector<Face> book = {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}};
+    EXPECT_EQ(sheet_graph(Connectivity(5, book)), (SheetGraph{3, 4, 2}));
+    // Around an edge of a fan of six stands a fin: it ends inside the sheet, which goes on around it.
+    std::vector<Face> fin = {{0, 1, 7}};
+    for (int k = 0; k < 6; ++k)
+        fin.push_back({0, 1 + k, 1 + (k + 1) % 6});
+    EXPECT_EQ(sheet_graph(Connectivity(8, fin)), (SheetGraph{2, 3, 2}));
 }
 
 TEST(Components, AreNumberedByTheirLowestVertex) {

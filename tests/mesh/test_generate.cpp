@@ -293,11 +293,12 @@ TEST_P(Generated, FoldsNowhereBesideItsSharpEdges) {
     const bool sharp = kind == GeneratorShape::box || kind == GeneratorShape::star || shape().options.caps;
     const TriangleMesh mesh = generate_mesh(options());
     const Connectivity connectivity(mesh.vertex_count(), mesh.faces);
-    for (const auto& [f, g] : connectivity.edge_faces()) {
-        if (g < 0)
+    for (int e = 0; e < connectivity.edge_count(); ++e) {
+        if (connectivity.is_boundary_edge(e))
             continue;
-        const Vec3 a = normal_of(mesh, mesh.faces[static_cast<std::size_t>(f)]).normalized();
-        const Vec3 b = normal_of(mesh, mesh.faces[static_cast<std::size_t>(g)]).normalized();
+        const auto sides = connectivity.edge_faces(e);
+        const Vec3 a = normal_of(mesh, mesh.faces[static_cast<std::size_t>(sides[0])]).normalized();
+        const Vec3 b = normal_of(mesh, mesh.faces[static_cast<std::size_t>(sides[1])]).normalized();
         EXPECT_GT(a.dot(b), sharp ? -0.8 : 0.6);
     }
 }

@@ -42,6 +42,7 @@ TEST(Malformed, EveryFileIsRefusedWithItsNameAndPlace) {
 TEST(Malformed, TheGoodMeshesBesideThemAreTaken) {
     EXPECT_NO_THROW(load("good/square.obj"));
     EXPECT_NO_THROW(load("good/triangle.obj"));
+    EXPECT_NO_THROW(load("good/joined_sheets.obj"));
 }
 
 } // namespace

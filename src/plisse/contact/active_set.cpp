@@ -95,8 +95,8 @@ void ActiveSet::find_chunk(const Candidates& candidates, StencilKind kind, int b
 std::uint8_t ActiveSet::repelling_ends(const std::array<int, 2>& edges, const std::array<int, 4>& vertices) const {
     std::uint8_t ends = 0;
     for (std::size_t i = 0; i < 4; ++i)
-        for (const int face : mesh_.connectivity.edge_faces()[static_cast<std::size_t>(edges[i < 2 ? 1 : 0])])
-            if (face >= 0 && !mesh_.has_corner(face, vertices[i]))
+        for (const int face : mesh_.connectivity.edge_faces(edges[i < 2 ? 1 : 0]))
+            if (!mesh_.has_corner(face, vertices[i]))
                 ends |= static_cast<std::uint8_t>(1U << i);
     return ends;
 }

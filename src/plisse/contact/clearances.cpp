@@ -43,9 +43,8 @@ void Clearances::add_vertex(int vertex, int part, double distance) {
 
 void Clearances::add_edge(int edge, int part, double distance) {
     of_edge_.push_back({edge, part, distance});
-    for (const int face : mesh_.connectivity.edge_faces()[static_cast<std::size_t>(edge)])
-        if (face >= 0)
-            of_face_.push_back({face, part, distance});
+    for (const int face : mesh_.connectivity.edge_faces(edge))
+        of_face_.push_back({face, part, distance});
 }
 
 void Clearances::keep_least(std::vector<Clearance>& clearances) {

@@ -73,20 +73,28 @@ private:
         places_.push_back({triangle.face, triangle.vertices, range, separation, count, corners});
     }
 
-    /// Edge k of a triangle, by the lower of its two faces. A face that is not near has no point nearer than the edge.
+    /// Edge k of a triangle, by the lowest of its faces that are near, once for each other. A face that is not near has
+    /// no point nearer than the edge.
     void take_off_edge(const NearTriangle& triangle, int k) {
         const int edge = mesh_.connectivity.face_edges()[at(triangle.face)][at(k)];
-        const int other_face = mesh_.connectivity.edge_faces()[at(edge)][1];
-        if (other_face <= triangle.face)
-            return;
-        const NearTriangle* other = find_near(other_face);
-        if (!other)
+        PairRange range = triangle.range;
+        int others = 0;
+        for (const int face : mesh_.connectivity.edge_faces(edge)) {
+            const NearTriangle* other = face == triangle.face ? nullptr : find_near(face);
+            if (!other)
+                continue;
+            if (face < triangle.face)
+                return;
+            range = least_of(range, other->range);
+            ++others;
+        }
+        if (others == 0)
             return;
         const int corners = 1 << k | 1 << (k + 1) % 3;
         const Separation separation = lies_in(triangle.separation, corners)
                                           ? triangle.separation
                                           : separate_from_border(gather(x_, triangle.vertices), k);
-        add(triangle, least_of(triangle.range, other->range), separation, -1);
+        add(triangle, range, separation, -others);
     }
 
     /// Corner k of a triangle, by the first face around it.
@@ -115,13 +123,15 @@ private:
         add(triangle, range, separation, count);
     }
 
-    /// How many edges at a vertex a face has in common with higher faces that do not have the point as a corner.
+    /// How many edges at a vertex a face has in common with a higher face that does not have the point as a corner.
     int inner_edges(int face, int vertex) const {
         int count = 0;
         for (const int edge : mesh_.connectivity.face_edges()[at(face)]) {
             const Edge& ends = mesh_.edges[at(edge)];
-            const int other = mesh_.connectivity.edge_faces()[at(edge)][1];
-            count += (ends[0] == vertex || ends[1] == vertex) && other > face && !has_point(other);
+            const auto sides = mesh_.connectivity.edge_faces(edge);
+            count +=
+                (ends[0] == vertex || ends[1] == vertex) &&
+                std::any_of(sides.begin(), sides.end(), [&](int other) { return other > face && !has_point(other); });
         }
         return count;
     }

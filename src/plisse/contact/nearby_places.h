@@ -28,9 +28,9 @@ struct NearPlace {
 };
 
 /// Lists what a point repels such that each place of the surface counts once, however it is triangulated, by inclusion
-/// and exclusion: each face at its closest point, less each edge between two faces, plus each vertex within a fan of
-/// faces. Above a flat patch all but the face below cancels; across a ridge or a peak one edge or vertex is left.
-/// (After the convergent incremental potential of Li et al. 2023.)
+/// and exclusion: each face at its closest point, less each edge between two faces (k - 1 times
+/// where k faces meet), plus each vertex within a fan of faces. Above a flat patch all but the face below cancels;
+/// across a ridge or a peak one edge or vertex is left. (After the convergent incremental potential of Li et al. 2023.)
 ///
 /// near: all triangles that the point is near to, ascending; they do not have the point as a corner. An edge and a
 /// vertex repel within the least range of their faces. `places` is cleared first.

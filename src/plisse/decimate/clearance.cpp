@@ -78,8 +78,8 @@ Clearance::Verdict Clearance::check(const Patch& patch) {
     return check_unconnected(patch);
 }
 
-/// Faces around a vertex that a projection maps one to one, because all turn the same way around it and once at most,
-/// meet only where they should.
+/// Faces of one sheet around a vertex that a projection maps one to one, because all turn the same way around it and
+/// once at most, meet only where they should.
 bool Clearance::star_is_graph(int vertex) const {
     constexpr double least_slope = 0.05, angle_margin = 0.01;
     Vec3 direction = Vec3::Zero();
@@ -104,7 +104,8 @@ bool Clearance::merged_star_intersects(const Patch& patch) {
     star_.clear();
     for (std::size_t n = 0; n < patch.after.size(); ++n)
         star_.push_back({&patch.after[n], &patch.after_shapes[n].normal});
-    if (star_is_graph(patch.k))
+    const bool joint = surface_.vertices[patch.i].joint || surface_.vertices[patch.j].joint;
+    if (!joint && star_is_graph(patch.k))
         return false;
     const auto before = [&](std::size_t n) -> const Face& { return surface_.faces.face(patch.after_face(n)); };
     for (std::size_t n = 0; n < patch.after.size(); ++n)
@@ -133,7 +134,8 @@ bool Clearance::ring_star_intersects(const Patch& patch, int vertex) {
     for (int f : surface_.faces.vertex_faces(vertex))
         if (is_outside(f))
             star_.push_back({&surface_.faces.face(f), &surface_.shapes[f].normal});
-    if (!surface_.vertices[vertex].locked && star_is_graph(vertex))
+    const VertexState& state = surface_.vertices[vertex];
+    if (!state.locked && !state.joint && star_is_graph(vertex))
         return false;
     for (int f : surface_.faces.vertex_faces(vertex))
         for (std::size_t n = 0; n < patch.after.size(); ++n)

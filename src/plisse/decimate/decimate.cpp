@@ -67,7 +67,7 @@ public:
           finest_points_(all_vertices(input), faces_.vertex_id_count(), faces_.face_id_count()),
           level_points_(finest_points_) {
         for (const VertexState& state : sequence.vertices)
-            on_boundary_.push_back(state.on_boundary);
+            on_curve_.push_back(state.on_curve);
     }
 
     HierarchyLevel finest() const {
@@ -101,7 +101,7 @@ public:
             meet_levels(c);
             const Collapse& collapse = sequence_.collapses[c - 1];
             faces_.expand(collapse);
-            triangles_.lay_out(collapse, sequence_.charts[c - 1], faces_, on_boundary_);
+            triangles_.lay_out(collapse, sequence_.charts[c - 1], faces_, on_curve_);
             for (PointCarrier& carrier : points)
                 carrier.carry_back(collapse, sequence_.charts[c - 1], triangles_);
         }
@@ -122,7 +122,7 @@ private:
     }
 
     void carry(const Collapse& collapse, const Chart& chart) {
-        triangles_.lay_out(collapse, chart, faces_, on_boundary_);
+        triangles_.lay_out(collapse, chart, faces_, on_curve_);
         finest_points_.carry(collapse, chart, triangles_);
         level_points_.carry(collapse, chart, triangles_);
         faces_.collapse(collapse);
@@ -168,7 +168,7 @@ private:
     const CollapseSequence& sequence_;
     DecimationSummary& summary_;
     DynamicFaces faces_;
-    std::vector<bool> on_boundary_;
+    std::vector<bool> on_curve_;
     PointCarrier finest_points_, level_points_;
     ChartTriangles triangles_;
 };

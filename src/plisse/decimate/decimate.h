@@ -54,7 +54,7 @@ struct DecimationSummary {
     std::vector<int> reached_vertices;             ///< per level, of the counted parts
     std::array<int, rejection_count> rejections{}; ///< tries, not edges
     bool ran_dry = false;                          ///< no edge could be collapsed any more above coarsest_vertices
-    bool topology_kept = true; ///< Euler characteristic, components and boundary loops equal on all levels
+    bool topology_kept = true; ///< Euler characteristic, components, boundary and graph of sheets equal on all levels
     long relocations = 0;      ///< of points, from one face to another
     int location_errors = 0;   ///< points found outside the new faces by more than round-off: 0 unless there is a fault
     double worst_location = 0; ///< smallest barycentric weight ever met, <= 0
@@ -64,8 +64,9 @@ struct DecimationSummary {
 /// Builds nested levels by quadric edge collapse (PSQ section 4.1; Garland and Heckbert 1997, Trettner and Kobbelt
 /// 2020), with each finer vertex's anchor by joint flattening (Liu et al. 2021) and the batches in which collapses are
 /// undone (PSQ section 4.4.4). Level sizes fall geometrically; when the queue runs dry early they are spread over what
-/// was reached. Vertices and faces that are not manifold or without area keep their whole neighbourhood. Vertices no
-/// face uses appear on the finest level only.
+/// was reached. Surfaces may consist of sheets joined at edges of more than two faces: such curves keep their shape as
+/// boundaries do, and stay where they meet or end. Faces without area, pinched vertices and faces turned opposite ways
+/// keep their whole neighbourhood. Vertices no face uses appear on the finest level only.
 ///
 /// The same input gives the same bits. A cancelled context ends the decimation early with a complete hierarchy.
 Hierarchy decimate(const DecimationInput& input, const DecimationOptions& options, Context* context = nullptr,

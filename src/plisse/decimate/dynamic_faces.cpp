@@ -45,10 +45,10 @@ void DynamicFaces::ring(int vertex, std::vector<int>& ring) const {
     ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
 }
 
-bool DynamicFaces::is_boundary_edge(int a, int b) const {
-    return std::count_if(vertex_faces_[a].begin(), vertex_faces_[a].end(), [&](int f) {
-               return std::find(faces_[f].begin(), faces_[f].end(), b) != faces_[f].end();
-           }) == 1;
+int DynamicFaces::edge_face_count(int a, int b) const {
+    return static_cast<int>(std::count_if(vertex_faces_[a].begin(), vertex_faces_[a].end(), [&](int f) {
+        return std::find(faces_[f].begin(), faces_[f].end(), b) != faces_[f].end();
+    }));
 }
 
 void DynamicFaces::add_face(int face, const Face& corners) {

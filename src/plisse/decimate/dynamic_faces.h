@@ -27,8 +27,10 @@ public:
     const std::vector<int>& vertex_faces(int vertex) const { return vertex_faces_[vertex]; }
     /// Neighbours of a vertex, ascending; `ring` is cleared first.
     void ring(int vertex, std::vector<int>& ring) const;
-    /// Whether exactly one face uses the edge.
-    bool is_boundary_edge(int a, int b) const;
+    /// How many faces use the edge.
+    int edge_face_count(int a, int b) const;
+    /// Whether the edge bounds sheets: one face uses it, or more than two.
+    bool is_curve_edge(int a, int b) const { return edge_face_count(a, b) != 2; }
 
     /// Makes a collapse: i and j leave, k comes, the dead faces leave.
     void collapse(const Collapse& collapse);

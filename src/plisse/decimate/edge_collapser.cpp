@@ -73,11 +73,11 @@ void EdgeCollapser::count_groups() {
 void EdgeCollapser::fill_queue(std::span<const Face> faces) {
     const Connectivity connectivity(static_cast<int>(made_.vertices.size()), faces);
     for (int e = 0; e < connectivity.edge_count(); ++e)
-        add_edge(connectivity.edges()[e], connectivity.is_boundary_edge(e));
+        add_edge(connectivity.edges()[e], connectivity.is_curve_edge(e));
 }
 
-void EdgeCollapser::add_edge(const Edge& edge, bool is_boundary_edge) {
-    if (const auto placement = placer_.place(edge, is_boundary_edge, made_.rest, made_.vertices))
+void EdgeCollapser::add_edge(const Edge& edge, bool is_curve_edge) {
+    if (const auto placement = placer_.place(edge, is_curve_edge, made_.rest, made_.vertices))
         queue_.add(edge, made_.vertices[edge[0]].group, placement->cost);
 }
 
@@ -120,7 +120,7 @@ std::optional<Rejection> EdgeCollapser::attempt(Edge edge) {
     patch_.gather(faces_, edge[0], edge[1], static_cast<int>(made_.vertices.size()));
     if (!topology_allows())
         return Rejection::topology;
-    const auto placement = placer_.place(edge, patch_.is_boundary_edge(), made_.rest, made_.vertices);
+    const auto placement = placer_.place(edge, patch_.is_curve_edge(), made_.rest, made_.vertices);
     if (!handle_allows(placement->alias))
         return Rejection::handle;
     made_.rest.col(patch_.k) = placement->position;
@@ -135,17 +135,17 @@ std::optional<Rejection> EdgeCollapser::attempt(Edge edge) {
     return {};
 }
 
-/// Keeps the surface a manifold with the same Euler characteristic and boundary loops.
+/// Keeps the surface as it is but for stretching: its sheets, their curves and where they meet. These are the link
+/// conditions for surfaces of sheets (Dey et al. 1999); that both ends are on curves but the edge is of none, or that
+/// both are corners, the placer has excluded.
 bool EdgeCollapser::topology_allows() const {
-    const bool i_inside = !made_.vertices[patch_.i].on_boundary, j_inside = !made_.vertices[patch_.j].on_boundary;
-    if (patch_.common_neighbours != static_cast<int>(patch_.dead_faces.size()))
+    if (patch_.common_neighbours != static_cast<int>(patch_.dead_faces.size()) || patch_.doubles_a_face())
         return false;
-    if (i_inside && j_inside && patch_.neighbours_of_i == 3 && patch_.neighbours_of_j == 3)
-        return false;
-    if (patch_.is_boundary_edge() && patch_.beyond_i == patch_.beyond_j)
-        return false; // a boundary loop of three edges
+    if (patch_.meets_itself)
+        return false; // a loop of three curve edges, or a face that two of them bound
     return patch_.face_count() >= 3 && !patch_.after.empty() &&
-           static_cast<int>(patch_.ring.size()) <= std::min(options_.most_neighbours, JointFlattening::most_ring);
+           static_cast<int>(patch_.ring.size()) <= std::min(options_.most_neighbours, JointFlattening::most_ring) &&
+           static_cast<int>(patch_.places.size()) <= JointFlattening::most_places;
 }
 
 bool EdgeCollapser::handle_allows(Alias alias) const {
@@ -209,7 +209,8 @@ void EdgeCollapser::merge_vertices(Alias alias) {
         --label_counts_[leaving.label];
     --groups_[i.group].left;
     VertexState merged = alias == Alias::j ? j : i;
-    merged.on_boundary = i.on_boundary || j.on_boundary;
+    merged.on_curve = i.on_curve || j.on_curve;
+    merged.joint = i.joint || j.joint;
     merged.handle_border = i.handle_border || j.handle_border;
     made_.vertices.push_back(merged);
     made_.counted_left.push_back(groups_[0].left);
@@ -218,11 +219,10 @@ void EdgeCollapser::merge_vertices(Alias alias) {
 void EdgeCollapser::update_queue() {
     queue_.remove_vertex(patch_.i);
     queue_.remove_vertex(patch_.j);
-    const bool on_boundary = made_.vertices[patch_.k].on_boundary;
+    const bool on_curve = made_.vertices[patch_.k].on_curve;
     for (int v : patch_.ring) {
-        const bool is_boundary_edge =
-            on_boundary && made_.vertices[v].on_boundary && faces_.is_boundary_edge(patch_.k, v);
-        add_edge({v, patch_.k}, is_boundary_edge);
+        const bool is_curve_edge = on_curve && made_.vertices[v].on_curve && faces_.is_curve_edge(patch_.k, v);
+        add_edge({v, patch_.k}, is_curve_edge);
     }
     for (int v : patch_.ring)
         queue_.wake(v);

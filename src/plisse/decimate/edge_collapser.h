@@ -38,7 +38,7 @@ private:
     void count_groups();
     void fill_queue(std::span<const Face> faces);
     int next_group() const;
-    void add_edge(const Edge& edge, bool is_boundary_edge);
+    void add_edge(const Edge& edge, bool is_curve_edge);
     void try_edge(int number);
     std::optional<Rejection> attempt(Edge edge);
     bool topology_allows() const;

@@ -14,7 +14,7 @@ struct Collapse {
     int i = -1, j = -1, k = -1;
     Vec3 rest_i, rest_j, rest_k; ///< m
     std::vector<int> ring;       ///< neighbours of k right after the collapse
-    std::vector<int> dead_faces; ///< one or two
+    std::vector<int> dead_faces; ///< those on the edge
     std::vector<Face> dead_corners;
     std::vector<int> faces_of_i, faces_of_j; ///< surviving faces whose corner i (j) became k
 };

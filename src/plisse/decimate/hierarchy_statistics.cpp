@@ -4,7 +4,6 @@
 #include <numeric>
 
 #include <plisse/decimate/patch.h>
-#include <plisse/mesh/connectivity.h>
 #include <plisse/spatial/box.h>
 
 namespace plisse {
@@ -54,7 +53,8 @@ TopologyCounts count_topology(int vertex_count, std::span<const Face> faces) {
         static_cast<int>(std::count_if(component.begin(), component.end(), [](int number) { return number >= 0; }));
     counts.faces = static_cast<int>(faces.size());
     counts.euler_characteristic = counts.vertices - connectivity.edge_count() + counts.faces;
-    counts.boundary_loops = static_cast<int>(boundary_loops(connectivity, faces).size());
+    counts.boundary_loops = static_cast<int>(boundary_pieces(connectivity).size());
+    counts.graph = sheet_graph(connectivity);
     counts.components = component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1;
     return counts;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <plisse/decimate/hierarchy.h>
+#include <plisse/mesh/sheet_graph.h>
 
 namespace plisse {
 
@@ -12,12 +13,13 @@ struct TopologyCounts {
     int vertices = 0; ///< used by faces
     int faces = 0;
     int euler_characteristic = 0;
-    int boundary_loops = 0;
+    int boundary_loops = 0; ///< connected pieces of the boundary
     int components = 0;
+    SheetGraph graph;
 
     bool same_topology(const TopologyCounts& other) const {
         return euler_characteristic == other.euler_characteristic && boundary_loops == other.boundary_loops &&
-               components == other.components;
+               components == other.components && graph == other.graph;
     }
 };
 TopologyCounts count_topology(int vertex_count, std::span<const Face> faces);

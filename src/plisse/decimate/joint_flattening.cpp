@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace plisse {
 
@@ -49,19 +50,18 @@ bool JointFlattening::flatten(const Patch& patch, const DynamicFaces& faces, con
                               Chart& chart) {
     lay_out(patch, faces, rest);
     assemble();
-    if (!patch.is_boundary_edge()) {
+    if (!patch.is_curve_edge()) {
         const Constraint constraint{.alias = alias};
         if (!solve(constraint) || !is_valid(constraint))
             return false;
         keep(alias, chart);
         return true;
     }
-    const int beyond_i = local_ring + patch.ring_index(patch.beyond_i);
-    const int beyond_j = local_ring + patch.ring_index(patch.beyond_j);
+    find_beyond(patch);
     const std::array<Constraint, 3> candidates{
-        {{.alias = Alias::i, .beyond_j = beyond_j},
-         {.alias = Alias::j, .beyond_i = beyond_i},
-         {.alias = Alias::none, .beyond_i = beyond_i, .beyond_j = beyond_j, .straight_k = true}}};
+        {{.alias = Alias::i, .straight_j = true},
+         {.alias = Alias::j, .straight_i = true},
+         {.alias = Alias::none, .straight_i = true, .straight_j = true, .straight_k = true}}};
     double least = std::numeric_limits<double>::infinity();
     for (const Constraint& candidate : candidates) {
         if (alias != Alias::none && candidate.alias != alias)
@@ -78,13 +78,17 @@ bool JointFlattening::flatten(const Patch& patch, const DynamicFaces& faces, con
 }
 
 void JointFlattening::lay_out(const Patch& patch, const DynamicFaces& faces, const Positions& rest) {
-    count_ = local_ring + static_cast<int>(patch.ring.size());
+    count_ = local_ring + static_cast<int>(patch.places.size());
+    sheet_count_ = patch.sheet_count;
     triangles_.clear();
-    const auto add = [&](const Face& face) {
+    const auto add = [&](const Face& face, int sheet) {
+        if (sheet == Patch::at_rest)
+            return;
         const Vec3 edge = rest.col(face[1]) - rest.col(face[0]);
         const Vec3 other = rest.col(face[2]) - rest.col(face[0]);
         const double length = edge.norm();
         Triangle& triangle = triangles_.emplace_back();
+        triangle.sheet = sheet;
         triangle.length = length;
         triangle.x = edge.dot(other) / length;
         triangle.y = edge.cross(other).norm() / length;
@@ -92,13 +96,25 @@ void JointFlattening::lay_out(const Patch& patch, const DynamicFaces& faces, con
             triangle.corner[c] = face[c] == patch.i   ? local_i
                                  : face[c] == patch.j ? local_j
                                  : face[c] == patch.k ? local_k
-                                                      : local_ring + patch.ring_index(face[c]);
+                                                      : local_ring + patch.place(sheet, face[c]);
     };
+    std::size_t place = 0;
     for (const auto* before : {&patch.dead_faces, &patch.faces_of_i, &patch.faces_of_j})
         for (int f : *before)
-            add(faces.face(f));
-    for (const Face& face : patch.after)
-        add(face);
+            add(faces.face(f), patch.sheets[place++]);
+    for (std::size_t n = 0; n < patch.after.size(); ++n)
+        add(patch.after[n], patch.sheet_of_after(n));
+}
+
+void JointFlattening::find_beyond(const Patch& patch) {
+    const auto find = [&](int vertex, std::vector<int>& places) {
+        places.clear();
+        for (int n = 0; n < static_cast<int>(patch.places.size()); ++n)
+            if (patch.places[n] == vertex)
+                places.push_back(local_ring + n);
+    };
+    find(patch.beyond_i, beyond_i_);
+    find(patch.beyond_j, beyond_j_);
 }
 
 void JointFlattening::assemble() {
@@ -126,13 +142,24 @@ int JointFlattening::number_unknowns(const Constraint& constraint) {
         unknown_[2 * local_k] = unknown_[2 * local_k + 1] = -1;
         coordinate_[2 * local_k] = constraint.alias == Alias::j ? 1 : 0;
     }
-    for (int vertex : {constraint.beyond_i, constraint.beyond_j, constraint.straight_k ? local_k : -1})
-        if (vertex >= 0)
-            unknown_[2 * vertex + 1] = -1;
+    if (constraint.straight_k)
+        unknown_[2 * local_k + 1] = -1;
+    const std::array<std::pair<bool, const std::vector<int>*>, 2> beyond{
+        {{constraint.straight_i, &beyond_i_}, {constraint.straight_j, &beyond_j_}}};
+    constexpr int shared = -2;
+    for (const auto& [straight, places] : beyond)
+        for (std::size_t n = 0; straight && n < places->size(); ++n) {
+            unknown_[2 * (*places)[n] + 1] = -1;
+            if (n > 0)
+                unknown_[2 * (*places)[n]] = shared;
+        }
     int unknowns = 0;
     for (int c = 0; c < 2 * count_; ++c)
         if (unknown_[c] >= 0)
             unknown_[c] = unknowns++;
+    for (const auto& [straight, places] : beyond)
+        for (std::size_t n = 1; straight && n < places->size(); ++n)
+            unknown_[2 * (*places)[n]] = unknown_[2 * places->front()];
     return unknowns;
 }
 
@@ -169,20 +196,20 @@ bool JointFlattening::solve(const Constraint& constraint) {
     return true;
 }
 
-bool JointFlattening::is_valid(const Constraint& constraint) const {
+bool JointFlattening::is_valid(const Constraint& constraint) {
     return runs_straight(constraint) && triangles_are_sound();
 }
 
-/// Boundary that should be straight may not double back.
+/// A curve that should be straight may not double back.
 bool JointFlattening::runs_straight(const Constraint& constraint) const {
     const auto u = [&](int vertex) { return coordinate_[2 * vertex]; };
-    if (constraint.beyond_i >= 0 && !(u(constraint.beyond_i) < std::min(0.0, u(local_k))))
+    if (constraint.straight_i && !(u(beyond_i_.front()) < std::min(0.0, u(local_k))))
         return false;
-    return constraint.beyond_j < 0 || u(constraint.beyond_j) > std::max(1.0, u(local_k));
+    return !constraint.straight_j || u(beyond_j_.front()) > std::max(1.0, u(local_k));
 }
 
-bool JointFlattening::triangles_are_sound() const {
-    std::array<double, local_ring> angles{};
+bool JointFlattening::triangles_are_sound() {
+    angles_.assign(static_cast<std::size_t>(local_ring * sheet_count_), 0.0);
     for (const Triangle& t : triangles_) {
         std::array<Vec2, 3> p;
         for (std::size_t c = 0; c < 3; ++c)
@@ -196,10 +223,10 @@ bool JointFlattening::triangles_are_sound() const {
         for (std::size_t c = 0; c < 3; ++c)
             if (t.corner[c] < local_ring) {
                 const Vec2 along = p[(c + 1) % 3] - p[c], back = p[(c + 2) % 3] - p[c];
-                angles[t.corner[c]] += std::atan2(twice_area, along.dot(back));
+                angles_[local_ring * t.sheet + t.corner[c]] += std::atan2(twice_area, along.dot(back));
             }
     }
-    return std::all_of(angles.begin(), angles.end(),
+    return std::all_of(angles_.begin(), angles_.end(),
                        [](double angle) { return angle <= 2 * std::numbers::pi + angle_tolerance; });
 }
 

@@ -16,7 +16,7 @@ Placer::Placer(const Positions& rest, std::span<const Face> faces, const std::ve
     : options_(options), quadrics_(vertices.size()) {
     scale_to(rest, faces, vertices);
     add_faces(rest, faces, vertices);
-    add_boundary(rest, faces, vertices);
+    add_curves(rest, faces, vertices);
 }
 
 void Placer::scale_to(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices) {
@@ -60,25 +60,26 @@ void Placer::add_faces(const Positions& rest, std::span<const Face> faces, const
     }
 }
 
-void Placer::add_boundary(const Positions& rest, std::span<const Face> faces,
-                          const std::vector<VertexState>& vertices) {
+void Placer::add_curves(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices) {
     const Connectivity connectivity(static_cast<int>(quadrics_.size()), faces);
     for (int e = 0; e < connectivity.edge_count(); ++e) {
         const Edge& edge = connectivity.edges()[e];
-        if (!connectivity.is_boundary_edge(e) || vertices[edge[0]].group < 0)
+        if (!connectivity.is_curve_edge(e) || vertices[edge[0]].group < 0)
             continue;
-        const Face& face = faces[connectivity.edge_faces()[e][0]];
         const Vec3 p = inward(rest.col(edge[0])), q = inward(rest.col(edge[1]));
-        const Vec3 normal = face_shape(rest.col(face[0]), rest.col(face[1]), rest.col(face[2])).normal;
-        const Vec3 across = (q - p).cross(normal);
-        const double length = across.norm();
-        if (!(length > 0))
-            continue;
-        const Quadric plane =
-            plane_quadric(across / length, 0.5 * (p + q), (q - p).squaredNorm() / (mean_edge_ * mean_edge_));
-        for (int v : edge) {
-            quadrics_[v].cost += plane;
-            quadrics_[v].exact += plane;
+        for (int f : connectivity.edge_faces(e)) {
+            const Face& face = faces[f];
+            const Vec3 normal = face_shape(rest.col(face[0]), rest.col(face[1]), rest.col(face[2])).normal;
+            const Vec3 across = (q - p).cross(normal);
+            const double length = across.norm();
+            if (!(length > 0))
+                continue;
+            const Quadric plane =
+                plane_quadric(across / length, 0.5 * (p + q), (q - p).squaredNorm() / (mean_edge_ * mean_edge_));
+            for (int v : edge) {
+                quadrics_[v].cost += plane;
+                quadrics_[v].exact += plane;
+            }
         }
     }
 }
@@ -98,15 +99,15 @@ Alias Placer::kept_end(const Edge& edge, const Positions& rest, const VertexStat
         const Quadric sum = quadrics_[edge[0]].cost + quadrics_[edge[1]].cost;
         return sum(inward(rest.col(edge[0]))) <= sum(inward(rest.col(edge[1]))) ? Alias::i : Alias::j;
     }
-    if (i.on_boundary != j.on_boundary)
-        return i.on_boundary ? Alias::i : Alias::j;
+    if (i.on_curve != j.on_curve)
+        return i.on_curve ? Alias::i : Alias::j;
     return Alias::none;
 }
 
-std::optional<Placement> Placer::place(const Edge& edge, bool is_boundary_edge, const Positions& rest,
+std::optional<Placement> Placer::place(const Edge& edge, bool is_curve_edge, const Positions& rest,
                                        const std::vector<VertexState>& vertices) const {
     const VertexState &i = vertices[edge[0]], &j = vertices[edge[1]];
-    if (i.group < 0 || i.locked || j.locked || (i.on_boundary && j.on_boundary && !is_boundary_edge))
+    if (i.group < 0 || i.locked || j.locked || (i.on_curve && j.on_curve && !is_curve_edge))
         return {};
     if (i.pinned() && j.pinned() && (i.label != j.label || (i.corner && j.corner)))
         return {};
@@ -114,12 +115,12 @@ std::optional<Placement> Placer::place(const Edge& edge, bool is_boundary_edge, 
     placement.alias = kept_end(edge, rest, i, j);
     const Quadric cost = quadrics_[edge[0]].cost + quadrics_[edge[1]].cost;
     if (placement.alias == Alias::none) {
-        placement.position = outward(is_boundary_edge ? boundary_minimiser(edge, rest) : cost.minimiser());
+        placement.position = outward(is_curve_edge ? curve_minimiser(edge, rest) : cost.minimiser());
         if (!placement.position.allFinite())
             placement.position = 0.5 * (rest.col(edge[0]) + rest.col(edge[1]));
     } else {
         const bool first = placement.alias == Alias::i;
-        if ((first ? j : i).on_boundary && !(first ? i : j).on_boundary)
+        if ((first ? j : i).on_curve && !(first ? i : j).on_curve)
             return {};
         placement.position = rest.col(edge[first ? 0 : 1]);
     }
@@ -127,8 +128,8 @@ std::optional<Placement> Placer::place(const Edge& edge, bool is_boundary_edge, 
     return placement;
 }
 
-/// Exact planes alone leave the place along a straight boundary open: a weak pull to both ends settles it.
-Vec3 Placer::boundary_minimiser(const Edge& edge, const Positions& rest) const {
+/// Exact planes alone leave the place along a straight curve open: a weak pull to both ends settles it.
+Vec3 Placer::curve_minimiser(const Edge& edge, const Positions& rest) const {
     Quadric q = quadrics_[edge[0]].exact + quadrics_[edge[1]].exact;
     const double pull = 1e-3 * q.a.trace() / 3;
     q.a.diagonal().array() += 2 * pull;

@@ -18,16 +18,16 @@ struct Placement {
 };
 
 /// Places merged vertices by quadrics. Each vertex has one with probabilistic face planes, which decides costs and
-/// inner positions, and one with exact face planes for vertices on the boundary, which the first would pull inwards.
-/// Both hold planes through boundary edges, across the surface.
+/// inner positions, and one with exact face planes for vertices on curves, which the first would pull off them. Both
+/// hold planes through curve edges, across each sheet that ends there.
 class Placer {
 public:
     /// Quadrics of vertices 0, 1, ... from the faces among them that are to be decimated.
     Placer(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices,
            const DecimationOptions& options);
 
-    /// Nothing when the edge may never collapse: a pinned end would have to move, or the boundary to leave itself.
-    std::optional<Placement> place(const Edge& edge, bool is_boundary_edge, const Positions& rest,
+    /// Nothing when the edge may never collapse: a pinned end would have to move, or a curve to leave itself.
+    std::optional<Placement> place(const Edge& edge, bool is_curve_edge, const Positions& rest,
                                    const std::vector<VertexState>& vertices) const;
 
     /// Adds the next vertex, which merges an edge.
@@ -40,9 +40,9 @@ private:
 
     void scale_to(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices);
     void add_faces(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices);
-    void add_boundary(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices);
+    void add_curves(const Positions& rest, std::span<const Face> faces, const std::vector<VertexState>& vertices);
     Alias kept_end(const Edge& edge, const Positions& rest, const VertexState& i, const VertexState& j) const;
-    Vec3 boundary_minimiser(const Edge& edge, const Positions& rest) const;
+    Vec3 curve_minimiser(const Edge& edge, const Positions& rest) const;
     double jitter(const Edge& edge) const;
 
     /// Quadrics are kept in coordinates of about unit size.

@@ -33,21 +33,29 @@ struct Fit {
     }
 };
 
-Fit locate_inside(const std::vector<ChartTriangles::Triangle>& triangles, const Vec2& place) {
+using Triangles = std::vector<ChartTriangles::Triangle>;
+
+bool may_hold(const ChartTriangles::Triangle& triangle, int sheet) {
+    return sheet < 0 || triangle.sheet == sheet;
+}
+
+Fit locate_inside(const Triangles& triangles, const Vec2& place, int sheet) {
     Fit best;
     for (const auto& triangle : triangles) {
+        if (!may_hold(triangle, sheet))
+            continue;
         const Vec3 weights = barycentric(triangle.corner, place);
         best.offer(triangle, weights, weights.minCoeff());
     }
     return best;
 }
 
-/// A boundary point is sought on boundary sides, its weight opposite the side being zero by definition.
-Fit locate_on_boundary(const std::vector<ChartTriangles::Triangle>& triangles, const Vec2& place) {
+/// A point of a curve is sought on sides on curves, its weight opposite the side being zero by definition.
+Fit locate_on_curve(const Triangles& triangles, const Vec2& place, int sheet) {
     Fit best;
     for (const auto& triangle : triangles)
         for (std::size_t c = 0; c < 3; ++c) {
-            if (!triangle.boundary[c])
+            if (!triangle.on_curve[c] || !may_hold(triangle, sheet))
                 continue;
             Vec3 weights = barycentric(triangle.corner, place);
             const double off = std::abs(weights[static_cast<Eigen::Index>(c)]);
@@ -61,79 +69,76 @@ bool holds(const Face& face, int vertex) {
     return face[0] == vertex || face[1] == vertex || face[2] == vertex;
 }
 
-/// Lays out the triangles of one side of a collapse, and marks their sides on the boundary.
+/// Lays out the triangles of one side of a collapse, and marks their sides on curves.
 class Layout {
 public:
-    Layout(const Collapse& collapse, const Chart& chart, const DynamicFaces& faces,
-           const std::vector<bool>& on_boundary)
-        : collapse_(collapse), chart_(chart), faces_(faces), on_boundary_(on_boundary) {}
+    Layout(const Patch& patch, const Chart& chart, const DynamicFaces& faces, const std::vector<bool>& on_curve)
+        : patch_(patch), chart_(chart), faces_(faces), on_curve_(on_curve) {}
 
-    void add(int face, const Face& corners) {
-        ids_.push_back(face);
-        corners_.push_back(corners);
-    }
+    void add(int face, int sheet, const Face& corners) { items_.push_back({face, sheet, corners}); }
 
-    void finish(std::vector<ChartTriangles::Triangle>& triangles) const {
+    void finish(Triangles& triangles) const {
         triangles.clear();
-        for (std::size_t n = 0; n < ids_.size(); ++n) {
+        for (const Item& item : items_) {
+            if (item.sheet == Patch::at_rest)
+                continue;
             auto& triangle = triangles.emplace_back();
-            triangle.face = ids_[n];
+            triangle.face = item.face;
+            triangle.sheet = item.sheet;
             for (std::size_t c = 0; c < 3; ++c) {
-                triangle.corner[c] = place(corners_[n][c]);
-                triangle.boundary[c] = is_boundary(corners_[n][(c + 1) % 3], corners_[n][(c + 2) % 3]);
+                triangle.corner[c] = place(item.sheet, item.corners[c]);
+                triangle.on_curve[c] = is_curve(item.corners[(c + 1) % 3], item.corners[(c + 2) % 3]);
             }
         }
     }
 
 private:
-    Vec2 place(int vertex) const {
-        if (vertex == collapse_.i)
+    struct Item {
+        int face, sheet;
+        Face corners;
+    };
+
+    Vec2 place(int sheet, int vertex) const {
+        if (vertex == patch_.i)
             return Vec2(0, 0);
-        if (vertex == collapse_.j)
+        if (vertex == patch_.j)
             return Vec2(1, 0);
-        if (vertex == collapse_.k)
+        if (vertex == patch_.k)
             return chart_.k;
-        const auto found = std::lower_bound(collapse_.ring.begin(), collapse_.ring.end(), vertex);
-        return chart_.ring[static_cast<std::size_t>(found - collapse_.ring.begin())];
+        return chart_.ring[static_cast<std::size_t>(patch_.place(sheet, vertex))];
     }
 
-    bool is_boundary(int a, int b) const {
-        if (!on_boundary_[a] || !on_boundary_[b])
+    bool is_curve(int a, int b) const {
+        if (!on_curve_[a] || !on_curve_[b])
             return false;
-        const auto is_center = [&](int v) { return v == collapse_.i || v == collapse_.j || v == collapse_.k; };
+        const auto is_center = [&](int v) { return v == patch_.i || v == patch_.j || v == patch_.k; };
         if (!is_center(a) && !is_center(b))
-            return faces_.is_boundary_edge(a, b);
-        return std::count_if(corners_.begin(), corners_.end(),
-                             [&](const Face& face) { return holds(face, a) && holds(face, b); }) == 1;
+            return faces_.is_curve_edge(a, b);
+        return std::count_if(items_.begin(), items_.end(),
+                             [&](const Item& item) { return holds(item.corners, a) && holds(item.corners, b); }) != 2;
     }
 
-    const Collapse& collapse_;
+    const Patch& patch_;
     const Chart& chart_;
     const DynamicFaces& faces_;
-    const std::vector<bool>& on_boundary_;
-    std::vector<int> ids_;
-    std::vector<Face> corners_;
+    const std::vector<bool>& on_curve_;
+    std::vector<Item> items_;
 };
 
 } // namespace
 
 void ChartTriangles::lay_out(const Collapse& collapse, const Chart& chart, const DynamicFaces& faces,
-                             const std::vector<bool>& on_boundary) {
-    ends_on_boundary = {on_boundary[collapse.i], on_boundary[collapse.j]};
-    merged_on_boundary = on_boundary[collapse.k];
-    Layout old_side(collapse, chart, faces, on_boundary), new_side(collapse, chart, faces, on_boundary);
-    for (std::size_t d = 0; d < collapse.dead_faces.size(); ++d)
-        old_side.add(collapse.dead_faces[d], collapse.dead_corners[d]);
-    const auto add_kept = [&](const std::vector<int>& kept, int from) {
-        for (int f : kept) {
-            Face corners = faces.face(f);
-            old_side.add(f, corners);
-            *std::find(corners.begin(), corners.end(), from) = collapse.k;
-            new_side.add(f, corners);
-        }
-    };
-    add_kept(collapse.faces_of_i, collapse.i);
-    add_kept(collapse.faces_of_j, collapse.j);
+                             const std::vector<bool>& on_curve) {
+    ends_on_curve = {on_curve[collapse.i], on_curve[collapse.j]};
+    merged_on_curve = on_curve[collapse.k];
+    patch_.gather(faces, collapse.i, collapse.j, collapse.k);
+    Layout old_side(patch_, chart, faces, on_curve), new_side(patch_, chart, faces, on_curve);
+    std::size_t number = 0;
+    for (const auto* list : {&patch_.dead_faces, &patch_.faces_of_i, &patch_.faces_of_j})
+        for (int f : *list)
+            old_side.add(f, patch_.sheets[number++], faces.face(f));
+    for (std::size_t n = 0; n < patch_.after.size(); ++n)
+        new_side.add(patch_.after_face(n), patch_.sheet_of_after(n), patch_.after[n]);
     old_side.finish(before);
     new_side.finish(after);
 }
@@ -147,16 +152,16 @@ PointCarrier::PointCarrier(std::span<const int> vertices, int vertex_id_count, i
 
 void PointCarrier::carry(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles) {
     moving_.clear();
-    const auto [i_on_boundary, j_on_boundary] = triangles.ends_on_boundary;
-    move_vertex_point(collapse.i, chart.alias == Alias::i ? collapse.k : -1, Vec2(0, 0), i_on_boundary);
-    move_vertex_point(collapse.j, chart.alias == Alias::j ? collapse.k : -1, Vec2(1, 0), j_on_boundary);
+    const auto [i_on_curve, j_on_curve] = triangles.ends_on_curve;
+    move_vertex_point(collapse.i, chart.alias == Alias::i ? collapse.k : -1, Vec2(0, 0), i_on_curve);
+    move_vertex_point(collapse.j, chart.alias == Alias::j ? collapse.k : -1, Vec2(1, 0), j_on_curve);
     relocate(triangles.before, triangles.after);
 }
 
 void PointCarrier::carry_back(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles) {
     moving_.clear();
     const int heir = chart.alias == Alias::i ? collapse.i : chart.alias == Alias::j ? collapse.j : -1;
-    move_vertex_point(collapse.k, heir, chart.k, triangles.merged_on_boundary);
+    move_vertex_point(collapse.k, heir, chart.k, triangles.merged_on_curve);
     relocate(triangles.after, triangles.before);
 }
 
@@ -170,7 +175,7 @@ void PointCarrier::relocate(const std::vector<ChartTriangles::Triangle>& from,
 }
 
 /// heir: the vertex that lies where this one was; -1: none does, and the point becomes one of a face.
-void PointCarrier::move_vertex_point(int vertex, int heir, const Vec2& place, bool on_boundary) {
+void PointCarrier::move_vertex_point(int vertex, int heir, const Vec2& place, bool on_curve) {
     const int point = point_at_vertex_[vertex];
     if (point < 0)
         return;
@@ -180,7 +185,7 @@ void PointCarrier::move_vertex_point(int vertex, int heir, const Vec2& place, bo
         vertices_[point] = heir;
     } else {
         vertices_[point] = -1;
-        moving_.push_back({point, place, on_boundary});
+        moving_.push_back({point, place, on_curve, Moving::any_sheet});
     }
 }
 
@@ -188,18 +193,19 @@ void PointCarrier::lift(const ChartTriangles::Triangle& triangle) {
     int& first = first_in_face_[triangle.face];
     for (int point = first; point >= 0; point = next_in_face_[point]) {
         const Vec3& weights = places_[point].weights;
-        bool on_boundary = false;
+        bool on_curve = false;
         for (std::size_t c = 0; c < 3; ++c)
-            on_boundary = on_boundary || (triangle.boundary[c] && weights[static_cast<Eigen::Index>(c)] == 0);
+            on_curve = on_curve || (triangle.on_curve[c] && weights[static_cast<Eigen::Index>(c)] == 0);
         const Vec2 place =
             weights[0] * triangle.corner[0] + weights[1] * triangle.corner[1] + weights[2] * triangle.corner[2];
-        moving_.push_back({point, place, on_boundary});
+        moving_.push_back({point, place, on_curve, triangle.sheet});
     }
     first = -1;
 }
 
 void PointCarrier::settle(const Moving& moving, const std::vector<ChartTriangles::Triangle>& triangles) {
-    Fit fit = moving.on_boundary ? locate_on_boundary(triangles, moving.place) : locate_inside(triangles, moving.place);
+    Fit fit = moving.on_curve ? locate_on_curve(triangles, moving.place, moving.sheet)
+                              : locate_inside(triangles, moving.place, moving.sheet);
     worst_ = std::min(worst_, fit.score);
     errors_ += fit.score < worst_round_off;
     for (double& weight : fit.weights)
@@ -212,10 +218,35 @@ void PointCarrier::settle(const Moving& moving, const std::vector<ChartTriangles
     first_in_face_[face] = moving.point;
 }
 
+namespace {
+
+/// The same place on the lowest face that has it.
+Anchor on_lowest_face(const Anchor& anchor, const DynamicFaces& faces) {
+    const Face& corners = faces.face(anchor.face);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const int a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];
+        if (anchor.weights[static_cast<Eigen::Index>(c)] != 0 || faces.edge_face_count(a, b) <= 2)
+            continue;
+        for (int f : faces.vertex_faces(a)) {
+            const Face& others = faces.face(f);
+            if (!holds(others, b))
+                continue;
+            Anchor lowest{f, Vec3::Zero()};
+            for (int v : {a, b})
+                lowest.weights[std::find(others.begin(), others.end(), v) - others.begin()] =
+                    anchor.weights[std::find(corners.begin(), corners.end(), v) - corners.begin()];
+            return lowest;
+        }
+    }
+    return anchor;
+}
+
+} // namespace
+
 Anchor PointCarrier::anchor(int point, const DynamicFaces& faces) const {
     const int vertex = vertices_[point];
     if (vertex < 0)
-        return places_[point];
+        return on_lowest_face(places_[point], faces);
     if (!faces.has_vertex(vertex))
         return {};
     const int f = faces.vertex_faces(vertex).front();

@@ -9,25 +9,28 @@
 
 namespace plisse {
 
-/// The triangles of a chart before and after its collapse, by face id.
+/// The triangles of a chart before and after its collapse, by face id. Those of sheets that rest are left out.
 struct ChartTriangles {
     struct Triangle {
-        int face;
+        int face, sheet;
         std::array<Vec2, 3> corner;     ///< in the order of the face's corners
-        std::array<bool, 3> boundary{}; ///< whether the side opposite each corner is on the boundary
+        std::array<bool, 3> on_curve{}; ///< whether the side opposite each corner is on a curve
     };
     std::vector<Triangle> before, after;
-    std::array<bool, 2> ends_on_boundary{}; ///< whether i and j are
-    bool merged_on_boundary = false;        ///< whether k is
+    std::array<bool, 2> ends_on_curve{}; ///< whether i and j are
+    bool merged_on_curve = false;        ///< whether k is
 
-    /// Fills both from a collapse that `faces` have not made yet. on_boundary: by vertex id. Keeps its memory.
+    /// Fills both from a collapse that `faces` have not made yet. on_curve: by vertex id. Keeps its memory.
     void lay_out(const Collapse& collapse, const Chart& chart, const DynamicFaces& faces,
-                 const std::vector<bool>& on_boundary);
+                 const std::vector<bool>& on_curve);
+
+private:
+    Patch patch_; // scratch
 };
 
 /// Follows points of a surface through collapses: each is a vertex until that is collapsed away, then a point of a face
 /// (the charts of Liu et al. 2021 make the map one to one). Collapses that are undone take points the other way. Points
-/// of the boundary stay on it.
+/// of curves stay on them, all others in their sheet.
 class PointCarrier {
 public:
     /// One point at each of these vertices.
@@ -38,7 +41,8 @@ public:
     /// The same where the collapse is undone.
     void carry_back(const Collapse& collapse, const Chart& chart, const ChartTriangles& triangles);
 
-    /// Where a point is, by face id. A point at a vertex takes the lowest face around it.
+    /// Where a point is, by face id. A point at a vertex takes the lowest face around it, one on an edge where sheets
+    /// are joined the lowest face on that.
     Anchor anchor(int point, const DynamicFaces& faces) const;
 
     long relocations() const { return relocations_; }
@@ -48,12 +52,14 @@ public:
 
 private:
     struct Moving {
+        static constexpr int any_sheet = -1;
         int point;
         Vec2 place;
-        bool on_boundary;
+        bool on_curve;
+        int sheet;
     };
 
-    void move_vertex_point(int vertex, int heir, const Vec2& place, bool on_boundary);
+    void move_vertex_point(int vertex, int heir, const Vec2& place, bool on_curve);
     void relocate(const std::vector<ChartTriangles::Triangle>& from, const std::vector<ChartTriangles::Triangle>& to);
     void lift(const ChartTriangles::Triangle& triangle);
     void settle(const Moving& moving, const std::vector<ChartTriangles::Triangle>& triangles);

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <plisse/decimate/patch.h>
+#include <plisse/mesh/unions.h>
 
 namespace plisse {
 
@@ -13,51 +15,89 @@ namespace {
 /// Faces with less quality than this have no area to speak of.
 constexpr double no_quality = 1e-10;
 
-/// The faces around a vertex, one after the other.
-struct Umbrella {
-    bool manifold = false;     ///< one fan, consistently turned
-    int first = -1, last = -1; ///< boundary neighbours of an open fan, in the order of the faces' turn
+/// How the faces around a vertex hang together.
+struct Surroundings {
+    bool sound = false; ///< across edges, and faces of a sheet turn alike
+    bool on_curve = false, joint = false;
+    bool regular = false;        ///< one curve runs through, which all sheets end at
+    int before = -1, after = -1; ///< of a regular vertex: neighbours on the curve
 };
 
-struct Wedge {
-    int from, to; ///< a face's corners after the centre
-    bool visited = false;
+class FacesAround {
+public:
+    FacesAround(const DynamicFaces& faces, int vertex) {
+        for (int f : faces.vertex_faces(vertex)) {
+            const Face& face = faces.face(f);
+            const std::size_t c = face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
+            const int place = face_count_++;
+            spokes_.push_back({face[(c + 1) % 3], place, true});
+            spokes_.push_back({face[(c + 2) % 3], place, false});
+        }
+        std::sort(spokes_.begin(), spokes_.end(), [](const Spoke& a, const Spoke& b) {
+            return std::tie(a.neighbour, a.face) < std::tie(b.neighbour, b.face);
+        });
+    }
+
+    Surroundings describe() const {
+        Surroundings result;
+        Unions fans(face_count_), all(face_count_);
+        std::vector<std::span<const Spoke>> curves;
+        bool turn_alike = true;
+        for (std::size_t begin = 0, end = 0; begin < spokes_.size(); begin = end) {
+            while (end < spokes_.size() && spokes_[end].neighbour == spokes_[begin].neighbour)
+                ++end;
+            const auto edge = std::span(spokes_).subspan(begin, end - begin);
+            for (const Spoke& spoke : edge)
+                all.join(edge.front().face, spoke.face);
+            if (edge.size() == 2) {
+                fans.join(edge[0].face, edge[1].face);
+                turn_alike = turn_alike && edge[0].leaves != edge[1].leaves;
+            } else {
+                curves.push_back(edge);
+                result.joint = result.joint || edge.size() > 2;
+            }
+        }
+        result.on_curve = !curves.empty();
+        result.sound = turn_alike && count(all) == 1;
+        if (curves.size() != 2 || !end_alike(curves[0], curves[1], fans))
+            return result;
+        result.regular = true;
+        const bool swapped = !curves[0].front().leaves; // a boundary runs with the surface on its left
+        result.before = curves[swapped ? 1 : 0].front().neighbour;
+        result.after = curves[swapped ? 0 : 1].front().neighbour;
+        return result;
+    }
+
+private:
+    /// An edge at the vertex as a side of a face.
+    struct Spoke {
+        int neighbour, face;
+        bool leaves; ///< whether the face runs from the vertex to the neighbour
+    };
+
+    int count(Unions& unions) const {
+        int result = 0;
+        for (int f = 0; f < face_count_; ++f)
+            result += unions.root(f) == f;
+        return result;
+    }
+
+    /// Whether each fan has one side on either curve edge.
+    static bool end_alike(std::span<const Spoke> a, std::span<const Spoke> b, Unions& fans) {
+        const auto roots = [&](std::span<const Spoke> edge) {
+            std::vector<int> result;
+            for (const Spoke& spoke : edge)
+                result.push_back(fans.root(spoke.face));
+            std::sort(result.begin(), result.end());
+            return result;
+        };
+        const std::vector<int> of_a = roots(a);
+        return of_a == roots(b) && std::adjacent_find(of_a.begin(), of_a.end()) == of_a.end();
+    }
+
+    std::vector<Spoke> spokes_;
+    int face_count_ = 0;
 };
-
-std::vector<Wedge> wedges(const DynamicFaces& faces, int vertex) {
-    std::vector<Wedge> result;
-    for (int f : faces.vertex_faces(vertex)) {
-        const Face& face = faces.face(f);
-        const std::size_t c = face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
-        result.push_back({face[(c + 1) % 3], face[(c + 2) % 3]});
-    }
-    return result;
-}
-
-Umbrella umbrella(const DynamicFaces& faces, int vertex) {
-    std::vector<Wedge> around = wedges(faces, vertex);
-    const auto open = std::find_if(around.begin(), around.end(), [&](const Wedge& wedge) {
-        return std::none_of(around.begin(), around.end(), [&](const Wedge& other) { return other.to == wedge.from; });
-    });
-    Wedge* wedge = open != around.end() ? &*open : &around.front();
-    const int start = wedge->from;
-    int end = start;
-    for (std::size_t steps = 0; steps < around.size(); ++steps) {
-        if (wedge->visited)
-            return {};
-        wedge->visited = true;
-        end = wedge->to;
-        const auto next =
-            std::find_if(around.begin(), around.end(), [&](const Wedge& other) { return other.from == end; });
-        if (next == around.end() && steps + 1 < around.size())
-            return {};
-        wedge = next == around.end() ? nullptr : &*next;
-    }
-    const bool closed = open == around.end();
-    if (closed != (end == start) || (!closed && wedge != nullptr))
-        return {};
-    return closed ? Umbrella{true, -1, -1} : Umbrella{true, start, end};
-}
 
 bool turns_by_more(const ConstPositions& rest, int before, int vertex, int after, double degrees) {
     const Vec3 in = rest.col(vertex) - rest.col(before), out = rest.col(after) - rest.col(vertex);
@@ -109,13 +149,13 @@ std::vector<VertexState> vertex_states(const DecimationInput& input, const Decim
         if (!faces.has_vertex(v))
             continue;
         state.group = groups[state.part];
-        const Umbrella around = umbrella(faces, v);
-        state.locked = !around.manifold;
+        const Surroundings around = FacesAround(faces, v).describe();
+        state.locked = !around.sound;
+        state.on_curve = around.on_curve;
+        state.joint = around.joint;
+        state.corner = around.on_curve && (!around.regular || turns_by_more(input.rest, around.before, v, around.after,
+                                                                            options.corner_angle));
         faces.ring(v, ring);
-        state.on_boundary =
-            std::any_of(ring.begin(), ring.end(), [&](int other) { return faces.is_boundary_edge(v, other); });
-        state.corner =
-            around.first >= 0 && turns_by_more(input.rest, around.first, v, around.last, options.corner_angle);
         state.handle_border = state.label >= 0 && borders_other_label(input, ring, state.label);
     }
     lock_faces_without_area(input, states);

@@ -18,23 +18,43 @@ bool runs_along(const Face& face, int a, int b) {
     return (face[0] == a && face[1] == b) || (face[1] == a && face[2] == b) || (face[2] == a && face[0] == b);
 }
 
+double area_at_rest(const Face& face, const Positions& rest) {
+    return (rest.col(face[1]) - rest.col(face[0])).cross(rest.col(face[2]) - rest.col(face[0])).norm() / 2;
+}
+
 } // namespace
 
 Hinges interior_hinges(const Connectivity& connectivity, std::span<const Face> faces) {
     Hinges hinges;
     for (int e = 0; e < connectivity.edge_count(); ++e) {
-        if (connectivity.is_boundary_edge(e))
-            continue;
-        const auto edge = static_cast<std::size_t>(e);
-        const std::array<int, 2>& sides = connectivity.edge_faces()[edge];
-        const std::array<int, 2>& corners = connectivity.opposite()[edge];
-        auto [a, b] = connectivity.edges()[edge];
-        if (!runs_along(faces[static_cast<std::size_t>(sides[0])], a, b))
-            std::swap(a, b);
-        hinges.vertices.push_back({a, b, corners[0], corners[1]});
-        hinges.faces.push_back(sides);
+        const auto sides = connectivity.edge_faces(e), corners = connectivity.opposite(e);
+        for (std::size_t p = 0; p < sides.size(); ++p) {
+            auto [a, b] = connectivity.edges()[static_cast<std::size_t>(e)];
+            if (!runs_along(faces[static_cast<std::size_t>(sides[p])], a, b))
+                std::swap(a, b);
+            for (std::size_t q = p + 1; q < sides.size(); ++q) {
+                hinges.vertices.push_back({a, b, corners[p], corners[q]});
+                hinges.faces.push_back({sides[p], sides[q]});
+                hinges.edges.push_back(e);
+            }
+        }
     }
     return hinges;
+}
+
+std::vector<double> hinge_shares(const Hinges& hinges, const Connectivity& connectivity, std::span<const Face> faces,
+                                 const Positions& rest) {
+    const auto slack = [&](int face) { return 1 / area_at_rest(faces[static_cast<std::size_t>(face)], rest); };
+    std::vector<double> shares;
+    for (std::size_t h = 0; h < hinges.edges.size(); ++h) {
+        const auto sides = connectivity.edge_faces(hinges.edges[h]);
+        double sum = 0;
+        for (int face : sides)
+            sum += slack(face);
+        const auto& [p, q] = hinges.faces[h];
+        shares.push_back(sides.size() == 2 ? 1 : (slack(p) + slack(q)) / sum);
+    }
+    return shares;
 }
 
 double bending_rigidity(double youngs_modulus, double poisson_ratio, double thickness) {

@@ -8,14 +8,25 @@
 
 namespace plisse {
 
-/// Interior edges of a mesh as hinges, by edge number.
+/// Interior edges of a mesh as hinges, by edge number: one for each pair of faces of an edge. Which way the second face
+/// turns makes no difference.
 struct Hinges {
     /// The edge as its first face runs along it, then the corner of that face and of the other (geometry/dihedral.h).
     std::vector<std::array<int, 4>> vertices;
     std::vector<std::array<int, 2>> faces;
+    std::vector<int> edges;
     int size() const { return static_cast<int>(vertices.size()); }
 };
 Hinges interior_hinges(const Connectivity& connectivity, std::span<const Face> faces);
+
+/// What part of its stiffness as an edge of two faces each hinge has: 1 unless the edge is a joint of more,
+///     (1/A_p + 1/A_q) / sum_r 1/A_r,     r over all faces of the edge, A at rest.
+/// That is a rigid joint: every face p bends by a spring K_p ~ 1/A_p from the edge to its middle (two in series make
+/// the hinge of a plain edge), all springs begin at the joint, and the joint turns freely. With its turn minimised out,
+/// what is left between p and q has the stiffness K_p K_q/sum_r K_r. So a face that carries no moment, such as an
+/// unloaded rib, leaves the other two the stiffness that they have without it (docs/decisions/0022).
+std::vector<double> hinge_shares(const Hinges& hinges, const Connectivity& connectivity, std::span<const Face> faces,
+                                 const Positions& rest);
 
 /// D = E h^3/(12 (1 - nu^2)), N m.
 double bending_rigidity(double youngs_modulus, double poisson_ratio, double thickness);

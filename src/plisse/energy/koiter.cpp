@@ -44,29 +44,52 @@ KoiterFaces::KoiterFaces(const Positions& rest, std::span<const Face> faces, con
            materials.flat.size() == faces.size());
     const Connectivity connectivity(vertex_count_, faces);
     edge_count_ = connectivity.edge_count();
-    const Hinges hinges = interior_hinges(connectivity, faces);
-    hinges_ = hinges.vertices;
-    for (std::size_t h = 0; h < hinges_.size(); ++h)
-        rest_angles_.push_back(materials.flat[at(hinges.faces[h][0])] ? 0.0 : dihedral_angle_at(hinges_[h], rest));
-    std::vector<int> hinge_of_edge(at(edge_count_), -1);
-    for (int e = 0, h = 0; e < edge_count_; ++e)
-        if (!connectivity.is_boundary_edge(e))
-            hinge_of_edge[at(e)] = h++;
-
+    const std::vector<int> hinge_of_edge = find_hinges(rest, connectivity, faces, materials.flat);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         ElementFace element{};
         element.edges = {connectivity.face_edges()[f], Vec3::Ones(), Vec3::Zero(),
                          turn_stiffness(rest, faces[f], materials.scaled_rigidity[f], materials.poisson_ratio[f])};
         for (int k = 0; k < 3; ++k) {
-            Side& side = element.sides[at(k)];
-            side.hinge = hinge_of_edge[at(element.edges.edges[at(k)])];
-            if (side.hinge >= 0 && hinges.faces[at(side.hinge)][0] != static_cast<int>(f))
+            const int edge = element.edges.edges[at(k)];
+            const auto sides = connectivity.edge_faces(edge);
+            const auto place = std::find(sides.begin(), sides.end(), static_cast<int>(f)) - sides.begin();
+            const bool at_joint = sides.size() > 2;
+            if (sides.size() == 1 || (at_joint && place == 0))
+                continue;
+            const int hinge = hinge_of_edge[at(edge)] + std::max(0, static_cast<int>(place) - 1);
+            element.sides[at(k)].hinge = hinge;
+            if (place > 0)
                 element.edges.sign[k] = -1;
+            if (at_joint)
+                element.edges.share[k] = 1;
+            const auto& corners = hinges_[at(hinge)];
+            if (at_joint && faces[f][at(k)] == corners[0]) { // it runs along the edge as the first face does
+                element.edges.sign[k] *= -1;
+                element.edges.share[k] *= -1;
+            }
         }
         number_vertices(element, faces[f]);
         faces_.push_back(element);
     }
     share_angles(connectivity);
+}
+
+/// Those of the first face of each edge with its others. Returns the number of an edge's first one.
+std::vector<int> KoiterFaces::find_hinges(const Positions& rest, const Connectivity& connectivity,
+                                          std::span<const Face> faces, std::span<const std::uint8_t> flat) {
+    const Hinges hinges = interior_hinges(connectivity, faces);
+    std::vector<int> of_edge(at(edge_count_), -1);
+    for (std::size_t h = 0; h < hinges.edges.size(); ++h) {
+        const int edge = hinges.edges[h], first = hinges.faces[h][0];
+        if (first != connectivity.edge_faces(edge)[0])
+            continue;
+        if (of_edge[at(edge)] < 0)
+            of_edge[at(edge)] = static_cast<int>(hinges_.size());
+        const bool is_flat = flat[at(first)] && !connectivity.is_curve_edge(edge);
+        hinges_.push_back(hinges.vertices[h]);
+        rest_angles_.push_back(is_flat ? 0.0 : dihedral_angle_at(hinges_.back(), rest));
+    }
+    return of_edge;
 }
 
 /// The face's own vertices first.
@@ -94,7 +117,7 @@ void KoiterFaces::share_angles(const Connectivity& connectivity) {
             of_edge[at(element.edges.edges[at(k)])] += element.edges.stiffness(k, k);
     for (ElementFace& element : faces_)
         for (int k = 0; k < 3; ++k)
-            if (const int edge = element.edges.edges[at(k)]; !connectivity.is_boundary_edge(edge))
+            if (const int edge = element.edges.edges[at(k)]; !connectivity.is_curve_edge(edge))
                 element.edges.share[k] = 1 - element.edges.stiffness(k, k) / of_edge[at(edge)];
 }
 

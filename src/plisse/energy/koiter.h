@@ -24,12 +24,14 @@ struct KoiterMaterials {
 ///
 /// The two faces of an edge share the turn theta between their normals: alpha = s theta + phi and (1 - s) theta - phi,
 /// where s is such that phi = 0 bends both by the same moment, were it not for their other edges. An edge of one face
-/// has alpha = phi. The turns phi, one an edge, are held here; they follow the vertices in x, three to a column: x is
-/// (x, phi). KoiterBending finds those that minimise the energy. Elements are faces with the corners beyond their
-/// edges.
+/// has alpha = phi. At an edge of more faces, a rigid joint, the normal of the joint is turned by phi from the first
+/// face, and the other faces have alpha = +-(theta - theta_rest - phi), theta between the first face and them, with the
+/// sign of a face that turns the other way than the first changed. The turns phi, one an edge, are held here; they
+/// follow the vertices in x, three to a column: x is (x, phi). KoiterBending finds those that minimise the energy.
+/// Elements are faces with the corners beyond their edges.
 class KoiterFaces : public ElementEnergy {
 public:
-    /// rest: rest positions, m; faces of positive area, at most two on an edge; one material a face.
+    /// rest: rest positions, m; faces of positive area; one material a face. `flat` does not hold of joints.
     KoiterFaces(const Positions& rest, std::span<const Face> faces, const KoiterMaterials& materials);
 
     int element_count() const override { return static_cast<int>(faces_.size()); }
@@ -58,7 +60,7 @@ public:
 
 private:
     struct Side {
-        int hinge = -1;               ///< -1 on a boundary
+        int hinge = -1;               ///< -1 on a boundary, and for the first face of a joint
         std::array<int, 4> corners{}; ///< of the hinge, as vertices of the element
     };
     struct ElementFace {
@@ -67,6 +69,8 @@ private:
         std::array<int, most_vertices> vertices;
         int vertex_count;
     };
+    std::vector<int> find_hinges(const Positions& rest, const Connectivity& connectivity, std::span<const Face> faces,
+                                 std::span<const std::uint8_t> flat);
     void number_vertices(ElementFace& element, const Face& face) const;
     void share_angles(const Connectivity& connectivity);
     Vec3 turns(int face, const Positions& x) const;

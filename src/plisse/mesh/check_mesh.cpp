@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include <plisse/mesh/connectivity.h>
+#include <plisse/mesh/sheet_graph.h>
 #include <plisse/spatial/intersections.h>
 
 namespace plisse {
@@ -65,11 +65,13 @@ bool runs_upward(const Face& face, const Edge& edge) {
 
 std::vector<Edge> find_inconsistent_edges(const Connectivity& connectivity, std::span<const Face> faces) {
     std::vector<Edge> result;
-    for (std::size_t e = 0; e < connectivity.edges().size(); ++e) {
-        const auto& [first, second] = connectivity.edge_faces()[e];
-        const Edge& edge = connectivity.edges()[e];
-        if (second >= 0 && runs_upward(faces[static_cast<std::size_t>(first)], edge) ==
-                               runs_upward(faces[static_cast<std::size_t>(second)], edge))
+    for (int e = 0; e < connectivity.edge_count(); ++e) {
+        if (connectivity.is_curve_edge(e))
+            continue;
+        const auto sides = connectivity.edge_faces(e);
+        const Edge& edge = connectivity.edges()[static_cast<std::size_t>(e)];
+        if (runs_upward(faces[static_cast<std::size_t>(sides[0])], edge) ==
+            runs_upward(faces[static_cast<std::size_t>(sides[1])], edge))
             result.push_back(edge);
     }
     return result;
@@ -111,17 +113,6 @@ int highest(const std::vector<int>& numbers) {
     return numbers.empty() ? -1 : *std::max_element(numbers.begin(), numbers.end());
 }
 
-/// Boundary edges that hang together count as one loop, which on a manifold they are; so this holds of any mesh.
-int count_boundary_loops(const Connectivity& connectivity) {
-    std::vector<Face> edges;
-    for (int e = 0; e < connectivity.edge_count(); ++e)
-        if (connectivity.is_boundary_edge(e)) {
-            const auto [a, b] = connectivity.edges()[static_cast<std::size_t>(e)];
-            edges.push_back({a, b, b});
-        }
-    return highest(components(connectivity.vertex_count(), edges)) + 1;
-}
-
 std::vector<std::array<int, 2>> find_intersections(const TriangleMesh& mesh, const std::vector<int>& degenerate) {
     std::vector<bool> left_out(mesh.faces.size(), false);
     for (int f : degenerate)
@@ -154,8 +145,8 @@ void describe(std::vector<std::string>& sentences, const std::vector<Item>& item
 } // namespace
 
 bool MeshCheck::usable() const {
-    return faces > 0 && non_manifold_edges.empty() && inconsistent_edges.empty() && non_manifold_vertices.empty() &&
-           degenerate_faces.empty() && duplicate_faces.empty() && intersecting_faces.empty();
+    return faces > 0 && inconsistent_edges.empty() && non_manifold_vertices.empty() && degenerate_faces.empty() &&
+           duplicate_faces.empty() && intersecting_faces.empty();
 }
 
 MeshCheck check_mesh(const TriangleMesh& mesh) {
@@ -174,7 +165,8 @@ MeshCheck check_mesh(const TriangleMesh& mesh) {
         check.non_manifold_edges.push_back(connectivity.edges()[static_cast<std::size_t>(e)]);
     check.inconsistent_edges = find_inconsistent_edges(connectivity, faces);
     check.non_manifold_vertices = find_non_manifold_vertices(connectivity, faces);
-    check.boundary_loops = count_boundary_loops(connectivity);
+    check.boundary_loops = static_cast<int>(boundary_pieces(connectivity).size());
+    check.sheets = sheet_graph(connectivity).sheets;
     const std::vector<int> component = components(check.vertices, faces);
     check.components = highest(component) + 1;
     check.unreferenced_vertices = static_cast<int>(std::count(component.begin(), component.end(), -1));
@@ -197,8 +189,6 @@ std::vector<std::string> describe_findings(const MeshCheck& check, const Triangl
     std::vector<std::string> sentences;
     if (check.faces == 0)
         sentences.push_back("no faces");
-    describe(sentences, check.non_manifold_edges, "edge with more than two faces", "edges with more than two faces",
-             edge);
     describe(sentences, check.inconsistent_edges, "edge whose two faces turn opposite ways",
              "edges whose two faces turn opposite ways", edge);
     describe(sentences, check.non_manifold_vertices, "vertex where surfaces touch in a point",

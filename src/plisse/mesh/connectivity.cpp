@@ -5,6 +5,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include <plisse/mesh/unions.h>
+
 namespace plisse {
 
 namespace {
@@ -37,21 +39,13 @@ Connectivity::Connectivity(int vertex_count, std::span<const Face> faces) : face
         const auto f = static_cast<std::size_t>(half.face);
         if (edges_.empty() || edges_.back() != half.edge) {
             edges_.push_back(half.edge);
-            edge_faces_.push_back({-1, -1});
-            opposite_.push_back({-1, -1});
+            edge_offsets_.push_back(static_cast<int>(edge_faces_.size()));
         }
-        const int e = edge_count() - 1;
-        face_edges_[f][static_cast<std::size_t>(half.corner)] = e;
-        auto& sides = edge_faces_.back();
-        const std::size_t side = sides[0] < 0 ? 0 : 1;
-        if (side == 1 && sides[1] >= 0) {
-            if (non_manifold_edges_.empty() || non_manifold_edges_.back() != e)
-                non_manifold_edges_.push_back(e);
-            continue;
-        }
-        sides[side] = half.face;
-        opposite_.back()[side] = faces[f][static_cast<std::size_t>((half.corner + 2) % 3)];
+        face_edges_[f][static_cast<std::size_t>(half.corner)] = edge_count() - 1;
+        edge_faces_.push_back(half.face);
+        opposite_.push_back(faces[f][static_cast<std::size_t>((half.corner + 2) % 3)]);
     }
+    edge_offsets_.push_back(static_cast<int>(edge_faces_.size()));
 
     vertex_faces_offsets_.assign(static_cast<std::size_t>(vertex_count) + 1, 0);
     for (const Face& face : faces)
@@ -65,15 +59,23 @@ Connectivity::Connectivity(int vertex_count, std::span<const Face> faces) : face
             vertex_faces_[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<int>(f);
 }
 
+std::vector<int> Connectivity::non_manifold_edges() const {
+    std::vector<int> result;
+    for (int e = 0; e < edge_count(); ++e)
+        if (edge_faces(e).size() > 2)
+            result.push_back(e);
+    return result;
+}
+
 std::vector<std::vector<int>> boundary_loops(const Connectivity& connectivity, std::span<const Face> faces) {
     std::unordered_map<int, int> successor; // along the boundary, surface on the left
     for (int e = 0; e < connectivity.edge_count(); ++e) {
         if (!connectivity.is_boundary_edge(e))
             continue;
-        const auto edge = static_cast<std::size_t>(e);
-        const Face& face = faces[static_cast<std::size_t>(connectivity.edge_faces()[edge][0])];
+        const Face& face = faces[static_cast<std::size_t>(connectivity.edge_faces(e)[0])];
+        const int opposite = connectivity.opposite(e)[0];
         for (std::size_t k = 0; k < 3; ++k)
-            if (face[k] != connectivity.opposite()[edge][0] && face[(k + 1) % 3] != connectivity.opposite()[edge][0])
+            if (face[k] != opposite && face[(k + 1) % 3] != opposite)
                 successor[face[k]] = face[(k + 1) % 3];
     }
     std::vector<int> starts;
@@ -95,31 +97,38 @@ std::vector<std::vector<int>> boundary_loops(const Connectivity& connectivity, s
     return loops;
 }
 
-std::vector<int> components(int vertex_count, std::span<const Face> faces) {
-    std::vector<int> parent(static_cast<std::size_t>(vertex_count));
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int v) {
-        while (parent[static_cast<std::size_t>(v)] != v) {
-            auto& p = parent[static_cast<std::size_t>(v)];
-            p = parent[static_cast<std::size_t>(p)];
-            v = p;
+std::vector<std::vector<int>> boundary_pieces(const Connectivity& connectivity) {
+    std::vector<Face> edges;
+    for (int e = 0; e < connectivity.edge_count(); ++e)
+        if (connectivity.is_boundary_edge(e)) {
+            const auto [a, b] = connectivity.edges()[static_cast<std::size_t>(e)];
+            edges.push_back({a, b, b});
         }
-        return v;
-    };
+    const std::vector<int> piece = components(connectivity.vertex_count(), edges);
+    std::vector<std::vector<int>> pieces;
+    for (std::size_t v = 0; v < piece.size(); ++v) {
+        if (piece[v] < 0)
+            continue;
+        pieces.resize(std::max(pieces.size(), static_cast<std::size_t>(piece[v]) + 1));
+        pieces[static_cast<std::size_t>(piece[v])].push_back(static_cast<int>(v));
+    }
+    return pieces;
+}
+
+std::vector<int> components(int vertex_count, std::span<const Face> faces) {
+    Unions unions(vertex_count);
     std::vector<bool> used(static_cast<std::size_t>(vertex_count), false);
     for (const Face& face : faces)
         for (int v : face) {
             used[static_cast<std::size_t>(v)] = true;
-            const int a = root(face[0]);
-            const int b = root(v);
-            parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+            unions.join(face[0], v);
         }
     std::vector<int> number(static_cast<std::size_t>(vertex_count), -1);
     int next = 0;
     for (int v = 0; v < vertex_count; ++v) {
         if (!used[static_cast<std::size_t>(v)])
             continue;
-        const int r = root(v);
+        const int r = unions.root(v);
         if (r == v)
             number[static_cast<std::size_t>(v)] = next++;
         else

@@ -10,8 +10,8 @@ namespace plisse {
 /// Relations of a triangle mesh, constant once built. Stored:
 ///   edges        unique, lower vertex first, sorted
 ///   face_edges   edge k of a face joins its corners k and k+1 (mod 3)
-///   edge_faces   the one or two faces of an edge, -1 where there is none (of a non-manifold edge, the first two)
-///   opposite     the corner of each of those faces that is not on the edge, -1 where there is none
+///   edge_faces   the faces of an edge, ascending: one on a boundary, two within a sheet, more where sheets are joined
+///   opposite     the corner of each of those faces that is not on the edge
 ///   vertex_faces faces around a vertex, ascending
 class Connectivity {
 public:
@@ -24,31 +24,37 @@ public:
 
     const std::vector<Edge>& edges() const { return edges_; }
     const std::vector<std::array<int, 3>>& face_edges() const { return face_edges_; }
-    const std::vector<std::array<int, 2>>& edge_faces() const { return edge_faces_; }
-    const std::vector<std::array<int, 2>>& opposite() const { return opposite_; }
-    std::span<const int> vertex_faces(int vertex) const {
-        const auto v = static_cast<std::size_t>(vertex);
-        return std::span(vertex_faces_)
-            .subspan(static_cast<std::size_t>(vertex_faces_offsets_[v]),
-                     static_cast<std::size_t>(vertex_faces_offsets_[v + 1] - vertex_faces_offsets_[v]));
-    }
-    bool is_boundary_edge(int edge) const { return edge_faces_[static_cast<std::size_t>(edge)][1] < 0; }
+    std::span<const int> edge_faces(int edge) const { return row(edge_faces_, edge_offsets_, edge); }
+    std::span<const int> opposite(int edge) const { return row(opposite_, edge_offsets_, edge); }
+    std::span<const int> vertex_faces(int vertex) const { return row(vertex_faces_, vertex_faces_offsets_, vertex); }
+    bool is_boundary_edge(int edge) const { return edge_faces(edge).size() == 1; }
+    /// Whether the edge bounds sheets: it does not have two faces.
+    bool is_curve_edge(int edge) const { return edge_faces(edge).size() != 2; }
     /// Edges with more than two faces, ascending.
-    const std::vector<int>& non_manifold_edges() const { return non_manifold_edges_; }
+    std::vector<int> non_manifold_edges() const;
 
 private:
+    static std::span<const int> row(const std::vector<int>& items, const std::vector<int>& offsets, int number) {
+        const auto n = static_cast<std::size_t>(number);
+        return std::span(items).subspan(static_cast<std::size_t>(offsets[n]),
+                                        static_cast<std::size_t>(offsets[n + 1] - offsets[n]));
+    }
+
     std::vector<Edge> edges_;
     std::vector<std::array<int, 3>> face_edges_;
-    std::vector<std::array<int, 2>> edge_faces_;
-    std::vector<std::array<int, 2>> opposite_;
+    std::vector<int> edge_faces_, opposite_;
+    std::vector<int> edge_offsets_;
     std::vector<int> vertex_faces_;
     std::vector<int> vertex_faces_offsets_{0};
-    std::vector<int> non_manifold_edges_;
 };
 
 /// Closed chains of boundary vertices, each walked with the surface on its left, ordered by their lowest vertex, which
 /// comes first. Of a manifold, consistently oriented mesh.
 std::vector<std::vector<int>> boundary_loops(const Connectivity& connectivity, std::span<const Face> faces);
+
+/// Vertices of the connected pieces of the boundary, ascending, ordered by their lowest vertex: the loops of a
+/// manifold. Where a sheet ends in another one its boundary may be an open chain, or branch.
+std::vector<std::vector<int>> boundary_pieces(const Connectivity& connectivity);
 
 /// Component number of every vertex, by order of lowest vertex; -1 for vertices no face uses.
 std::vector<int> components(int vertex_count, std::span<const Face> faces);

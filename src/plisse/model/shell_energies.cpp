@@ -61,11 +61,13 @@ double scaled_rigidity(const Material& material) {
 std::unique_ptr<HingeEnergy> make_hinges(const Model& model, const Positions& rest, const BentFaces& bent) {
     const Connectivity connectivity(static_cast<int>(rest.cols()), bent.faces);
     Hinges hinges = interior_hinges(connectivity, bent.faces);
+    const std::vector<double> shares = hinge_shares(hinges, connectivity, bent.faces, rest);
     HingeMaterials materials;
-    for (const auto& sides : hinges.faces) {
-        const Body& body = model.bodies[at(bent.body[at(sides[0])])];
-        materials.scaled_rigidity.push_back(scaled_rigidity(body.material));
-        materials.flat.push_back(body.flat_rest_angles);
+    for (std::size_t h = 0; h < shares.size(); ++h) {
+        const Body& body = model.bodies[at(bent.body[at(hinges.faces[h][0])])];
+        materials.scaled_rigidity.push_back(shares[h] * scaled_rigidity(body.material));
+        // Sheets can be flat, but not where they are joined.
+        materials.flat.push_back(body.flat_rest_angles && !connectivity.is_curve_edge(hinges.edges[h]));
     }
     return std::make_unique<HingeEnergy>(rest, std::move(hinges.vertices), materials, HingeHessian::projected);
 }
@@ -107,7 +109,7 @@ ShellEnergies::ShellEnergies(const Model& model, const Positions& rest, const Le
         for (std::size_t f = 0; f < faces.size(); ++f)
             if (face_body[f] == static_cast<int>(b))
                 of_body.push_back(faces[f]);
-        if (!boundary_loops(Connectivity(vertex_count_, of_body), of_body).empty()) {
+        if (!boundary_pieces(Connectivity(vertex_count_, of_body)).empty()) {
             open_.push_back({static_cast<int>(b), std::move(of_body)});
             continue;
         }

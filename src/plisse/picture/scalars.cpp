@@ -43,11 +43,11 @@ Vec3 mixed_areas(const Vec3& cotangents, const Vec3& squared_lengths, double are
     return shares;
 }
 
-/// Gives the boundary vertices the mean of their inner neighbours, and those without any, such as the corners of a
-/// sheet, the mean of the neighbours that got one.
+/// Gives the vertices at the borders of sheets the mean of their inner neighbours, and those without any, such as the
+/// corners of a sheet, the mean of the neighbours that got one.
 void fill_boundary(std::vector<double>& values, const Connectivity& mesh) {
     for (int e = 0; e < mesh.edge_count(); ++e)
-        if (mesh.is_boundary_edge(e))
+        if (mesh.is_curve_edge(e))
             for (int v : mesh.edges()[static_cast<std::size_t>(e)])
                 values[static_cast<std::size_t>(v)] = nan;
     for (int round = 0; round < 2; ++round) {

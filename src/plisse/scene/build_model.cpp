@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include <plisse/energy/rest_triangles.h>
+#include <plisse/mesh/connectivity.h>
 #include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
@@ -63,12 +64,30 @@ private:
         if (spec.start)
             start = same_mesh(mesh, *spec.start, spec.transform, pointer + "/start");
 
+        expect_sides(spec, mesh, pointer);
         Body& body = model_.bodies.emplace_back();
         body.name = spec.name;
         std::tie(body.vertices, body.faces) = append(mesh, start);
         body.material = spec.material;
         body.pressure = spec.pressure;
         body.flat_rest_angles = spec.rest.kind == RestSpec::Kind::flat_angles;
+    }
+
+    /// Pressure needs an inside and an outside, or at least one front.
+    void expect_sides(const BodySpec& spec, const TriangleMesh& mesh, const std::string& pointer) const {
+        const auto& keys = spec.pressure.keys;
+        if (std::all_of(keys.begin(), keys.end(), [](const auto& key) { return key.value == 0; }))
+            return;
+        const Connectivity connectivity(mesh.vertex_count(), mesh.faces);
+        if (const auto joints = connectivity.non_manifold_edges(); !joints.empty()) {
+            const Edge& edge = connectivity.edges()[static_cast<std::size_t>(joints.front())];
+            throw scene_.error_at(
+                pointer + "/pressure",
+                fmt::format("sheets are joined at edges of more than two faces, such as {}-{}, so the "
+                            "body has no two sides for a pressure to act between",
+                            edge[0], edge[1]),
+                "give a load with a `traction` on the vertices that it acts on");
+        }
     }
 
     Positions same_mesh(const TriangleMesh& mesh, const MeshSpec& spec, const TransformSpec& transform,

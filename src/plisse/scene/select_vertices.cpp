@@ -48,15 +48,13 @@ struct Selector {
     }
 
     std::vector<int> operator()(const LoopSelection& selection) const {
-        const auto loops = boundary_loops(Connectivity(mesh.vertex_count(), mesh.faces), mesh.faces);
+        const auto loops = boundary_pieces(Connectivity(mesh.vertex_count(), mesh.faces));
         if (selection.loop >= static_cast<int>(loops.size()))
             throw scene.error_at(pointer + "/boundary_loop",
                                  fmt::format("there is no loop {}: the mesh has {}", selection.loop, loops.size()),
                                  loops.empty() ? "select in another way: the mesh is closed"
                                                : fmt::format("give a number from 0 to {}", loops.size() - 1));
-        std::vector<int> taken = loops[static_cast<std::size_t>(selection.loop)];
-        std::sort(taken.begin(), taken.end());
-        return taken;
+        return loops[static_cast<std::size_t>(selection.loop)];
     }
 };
 
