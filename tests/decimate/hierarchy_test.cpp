@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <set>
 
+#include <Eigen/Geometry>
+
 #include <plisse/decimate/decimate.h>
 #include <plisse/decimate/dynamic_faces.h>
 #include <plisse/decimate/hierarchy_statistics.h>
+#include <plisse/decimate/level_prolongation.h>
 #include <plisse/mesh/connectivity.h>
 #include <plisse/spatial/intersections.h>
 
@@ -213,6 +216,19 @@ TEST_P(HierarchyProperties, rest_positions_follow_the_records) {
     for (int l = 0; l <= coarse_count(); ++l)
         for (std::size_t v = 0; v < level(l).vertex_ids.size(); ++v)
             EXPECT_EQ(level(l).rest.col(static_cast<Eigen::Index>(v)), rest.col(level(l).vertex_ids[v]));
+}
+
+TEST_P(HierarchyProperties, prolongations_keep_the_rest_shape_and_follow_rigid_motions) {
+    const Mat3 turn = Eigen::AngleAxisd(2, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+    const Positions moved = (turn * hierarchy_.finest().rest).colwise() + Vec3(1, 2, 3);
+    for (int l = 0; l < coarse_count(); ++l)
+        for (const auto kind : {ProlongationOperator::shell, ProlongationOperator::blend}) {
+            const Prolongation prolongation = prolongation_to_finest(hierarchy_, l, kind);
+            const Positions& rest = level(l).rest;
+            EXPECT_LT((prolongation.apply(rest) - hierarchy_.finest().rest).cwiseAbs().maxCoeff(), 1e-13);
+            const Positions turned = (turn * rest).colwise() + Vec3(1, 2, 3);
+            EXPECT_LT((prolongation.apply(turned) - moved).cwiseAbs().maxCoeff(), 1e-12);
+        }
 }
 
 bool in_hole(int x, int y) {

@@ -71,7 +71,7 @@ TEST(JoinedSheets, ACantileverOfTSectionBendsAsABeam) {
     const RunResult result = solve(model);
     double deflection = 0;
     for (int v : tip)
-        deflection -= result.positions(1, v) / static_cast<double>(tip.size());
+        deflection += (model.start(1, v) - result.positions(1, v)) / static_cast<double>(tip.size());
 
     const double panel = width * thickness, rib = height * thickness;
     const double centroid = rib * height / 2 / (panel + rib);
@@ -121,13 +121,12 @@ TEST(JoinedSheets, RunProgressivelyToTheSameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(run_on(1), run_on(2));
 }
 
-TEST(JoinedSheets, RunWithEveryOperatorAndKoiterBending) {
-    for (const ProlongationOperator kind : {ProlongationOperator::blend, ProlongationOperator::affine}) {
-        Model model = pressed_rib();
-        model.hierarchy.prolongation = kind;
-        model.bodies.front().material.bending = BendingModel::koiter;
-        EXPECT_EQ(solve(model).report.intersecting_pairs, 0);
-    }
+TEST(JoinedSheets, RunWithKoiterBendingAndBlend) {
+    Model model = pressed_rib();
+    model.hierarchy = {2, 150, ProlongationOperator::blend};
+    model.bodies.front().material.bending = BendingModel::koiter;
+    model.solve.time_step = model.solve.duration = 0.2;
+    EXPECT_EQ(solve(model).report.intersecting_pairs, 0);
 }
 
 } // namespace

@@ -64,9 +64,8 @@ struct DecimationSummary {
 /// Builds nested levels by quadric edge collapse (PSQ section 4.1; Garland and Heckbert 1997, Trettner and Kobbelt
 /// 2020), with each finer vertex's anchor by joint flattening (Liu et al. 2021) and the batches in which collapses are
 /// undone (PSQ section 4.4.4). Level sizes fall geometrically; when the queue runs dry early they are spread over what
-/// was reached. Surfaces may consist of sheets joined at edges of more than two faces: such curves keep their shape as
-/// boundaries do, and stay where they meet or end. Faces without area, pinched vertices and faces turned opposite ways
-/// keep their whole neighbourhood. Vertices no face uses appear on the finest level only.
+/// was reached. Joints of more than two faces keep their shape as boundaries do. Faces without area, pinched vertices
+/// and faces turned opposite ways keep their neighbourhood. Vertices no face uses appear on the finest level only.
 ///
 /// The same input gives the same bits. A cancelled context ends the decimation early with a complete hierarchy.
 Hierarchy decimate(const DecimationInput& input, const DecimationOptions& options, Context* context = nullptr,
