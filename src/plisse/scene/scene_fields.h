@@ -183,8 +183,8 @@ void describe(Visitor& v, BodySpec& b) {
             "Pa; outward of a closed body whichever way its faces turn, along face normals of an open one; a number or "
             "keyframes [[t, Pa], ...]; {\"gas\": p0} and {\"volume\": ratio} are for a later version");
     v.field("rest", b.rest,
-            "the shape free of stress: as-given, flat-angles (lengths as given, no rest curvature), or {\"mesh\": ...} "
-            "of the same connectivity");
+            "the shape free of stress: as-given, flat-angles (lengths as given, no rest curvature; where more than two "
+            "faces meet angles as given), or {\"mesh\": ...} of the same connectivity");
     v.field("start", b.start, "a mesh of the same connectivity to start from, when not the body's mesh");
 }
 
