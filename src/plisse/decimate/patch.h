@@ -39,7 +39,6 @@ struct Patch {
 
     bool is_curve_edge() const { return dead_faces.size() != 2; }
     int face_count() const { return static_cast<int>(dead_faces.size() + after.size()); }
-    int sheet_of_dead(std::size_t d) const { return sheets[d]; }
     /// Of face number n of `after`.
     int sheet_of_after(std::size_t n) const { return sheets[dead_faces.size() + n]; }
     /// Id of face number n of `after`.

@@ -69,6 +69,27 @@ bool holds(const Face& face, int vertex) {
     return face[0] == vertex || face[1] == vertex || face[2] == vertex;
 }
 
+/// The same place on the lowest face that has it.
+Anchor on_lowest_face(const Anchor& anchor, const DynamicFaces& faces) {
+    const Face& corners = faces.face(anchor.face);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const int a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];
+        if (anchor.weights[static_cast<Eigen::Index>(c)] != 0 || faces.edge_face_count(a, b) <= 2)
+            continue;
+        for (int f : faces.vertex_faces(a)) {
+            const Face& others = faces.face(f);
+            if (!holds(others, b))
+                continue;
+            Anchor lowest{f, Vec3::Zero()};
+            for (int v : {a, b})
+                lowest.weights[std::find(others.begin(), others.end(), v) - others.begin()] =
+                    anchor.weights[std::find(corners.begin(), corners.end(), v) - corners.begin()];
+            return lowest;
+        }
+    }
+    return anchor;
+}
+
 /// Lays out the triangles of one side of a collapse, and marks their sides on curves.
 class Layout {
 public:
@@ -217,31 +238,6 @@ void PointCarrier::settle(const Moving& moving, const std::vector<ChartTriangles
     next_in_face_[moving.point] = first_in_face_[face];
     first_in_face_[face] = moving.point;
 }
-
-namespace {
-
-/// The same place on the lowest face that has it.
-Anchor on_lowest_face(const Anchor& anchor, const DynamicFaces& faces) {
-    const Face& corners = faces.face(anchor.face);
-    for (std::size_t c = 0; c < 3; ++c) {
-        const int a = corners[(c + 1) % 3], b = corners[(c + 2) % 3];
-        if (anchor.weights[static_cast<Eigen::Index>(c)] != 0 || faces.edge_face_count(a, b) <= 2)
-            continue;
-        for (int f : faces.vertex_faces(a)) {
-            const Face& others = faces.face(f);
-            if (!holds(others, b))
-                continue;
-            Anchor lowest{f, Vec3::Zero()};
-            for (int v : {a, b})
-                lowest.weights[std::find(others.begin(), others.end(), v) - others.begin()] =
-                    anchor.weights[std::find(corners.begin(), corners.end(), v) - corners.begin()];
-            return lowest;
-        }
-    }
-    return anchor;
-}
-
-} // namespace
 
 Anchor PointCarrier::anchor(int point, const DynamicFaces& faces) const {
     const int vertex = vertices_[point];
