@@ -34,19 +34,19 @@ public:
         std::vector<std::vector<double>> curves;
         for (const bool from_boundary : {true, false})
             for (int e = 0; e < edges_.edge_count(); ++e)
-                if (crosses(e) && (!from_boundary || edges_.is_boundary_edge(e)) && !visited_[at(face_of(e, 0))])
+                if (crosses(e) && (!from_boundary || edges_.is_curve_edge(e)) && !visited_[at(face_of(e, 0))])
                     curves.push_back(walk(e, face_of(e, 0), x));
         return curves;
     }
 
 private:
-    int face_of(int edge, std::size_t side) const { return edges_.edge_faces()[at(edge)][side]; }
+    int face_of(int edge, std::size_t side) const { return edges_.edge_faces(edge)[side]; }
     bool crosses(int edge) const {
         const auto [a, b] = edges_.edges()[at(edge)];
         return (heights_[a] > 0) != (heights_[b] > 0);
     }
 
-    /// From an edge through a face, and on until the boundary or a face seen before.
+    /// From an edge through a face, and on until the sheet ends or a face was seen before.
     std::vector<double> walk(int edge, int face, const Positions& x) {
         std::vector<double> turned;
         double total = 0;
@@ -57,7 +57,7 @@ private:
                     edge = next;
                     break;
                 }
-            if (edges_.is_boundary_edge(edge))
+            if (edges_.is_curve_edge(edge))
                 break;
             total += turn(edge, x) - turn(edge, rest_);
             turned.push_back(total);
@@ -69,14 +69,14 @@ private:
     /// The hinge's angle as the walk across it feels it: none where it goes along the edge.
     double turn(int edge, const Positions& x) const {
         const auto [a, b] = edges_.edges()[at(edge)];
-        const auto [c, d] = edges_.opposite()[at(edge)];
+        const std::span<const int> corners = edges_.opposite(edge);
         const Face& first = faces_[at(face_of(edge, 0))];
         const bool forward =
             (first[0] == a && first[1] == b) || (first[1] == a && first[2] == b) || (first[2] == a && first[0] == b);
         const int from = forward ? a : b, to = forward ? b : a;
         const double across =
             std::abs(heights_[a] - heights_[b]) / (rest_.col(a) - rest_.col(b)).norm(); // sine of edge and plane
-        return across * dihedral_angle(x.col(from), x.col(to), x.col(c), x.col(d));
+        return across * dihedral_angle(x.col(from), x.col(to), x.col(corners[0]), x.col(corners[1]));
     }
 
     const Positions& rest_;

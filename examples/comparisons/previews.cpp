@@ -2,11 +2,16 @@
 //     compare_previews SCENE.json
 // A scene's "x-compare" may name the plane of a curve along which folds are counted, and the handle whose force counts.
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +19,7 @@
 #include <plisse/base/error.h>
 #include <plisse/decimate/level_prolongation.h>
 #include <plisse/drive/run.h>
+#include <plisse/mesh/write_ply.h>
 #include <plisse/scene/build_model.h>
 #include <plisse/scene/read_scene.h>
 #include <plisse/spatial/box.h>
@@ -96,7 +102,32 @@ Contestant compete_directly(Model model, Context& context) {
     return contestant;
 }
 
-std::vector<Contestant> hold_contest(Model model, Context& context) {
+/// The scene on the mesh that another hierarchy has on level 0, subdivided: equal counts where the levels of the other
+/// have four times the vertices of the next coarser.
+Contestant compete_by_loop(Scene scene, const Hierarchy& hierarchy, Context& context) {
+    if (scene.bodies.size() != 1)
+        throw InputError(scene.name, "it has several bodies", "compare a scene of one");
+    const HierarchyLevel& coarse = hierarchy.levels.front();
+    const auto count = std::count(coarse.part.begin(), coarse.part.end(), 0);
+    TriangleMesh mesh;
+    mesh.positions = coarse.rest.leftCols(count);
+    std::copy_if(coarse.faces.begin(), coarse.faces.end(), std::back_inserter(mesh.faces),
+                 [&](const Face& face) { return face[0] < count; });
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / fmt::format("plisse_previews_{}.ply", getpid());
+    write_ply(file, mesh);
+    BodySpec& body = scene.bodies.front();
+    body.mesh.file = file.string();
+    body.transform = {}; // the level's mesh is where the body is
+    scene.hierarchy.source = HierarchySource::loop;
+    scene.hierarchy.prolongation = ProlongationOperator::loop;
+    scene.hierarchy.bending_on = BendingOn::finest;
+    const Model model = build_model(scene, context);
+    std::filesystem::remove(file);
+    return compete("loop", model, context);
+}
+
+std::vector<Contestant> hold_contest(const Scene& scene, Model model, Context& context) {
     std::vector<Contestant> contestants;
     const auto add = [&](const char* label, ProlongationOperator kind, BendingOn bending) {
         model.hierarchy.prolongation = kind;
@@ -108,6 +139,7 @@ std::vector<Contestant> hold_contest(Model model, Context& context) {
     add("blend", ProlongationOperator::blend, BendingOn::finest);
     model.hierarchy.prolongation = ProlongationOperator::shell;
     contestants.push_back(compete_directly(model, context));
+    contestants.push_back(compete_by_loop(scene, contestants.front().last.hierarchy, context));
     return contestants;
 }
 
@@ -168,10 +200,11 @@ private:
 
 void compare(const std::string& file) {
     Context context;
-    const Model model = build_model(read_scene(file), context);
+    const Scene scene = read_scene(file);
+    const Model model = build_model(scene, context);
     const Table table(model, read_interest(file));
     table.print_head();
-    for (const Contestant& contestant : hold_contest(model, context))
+    for (const Contestant& contestant : hold_contest(scene, model, context))
         table.print(contestant);
 }
 

@@ -95,7 +95,7 @@ struct HierarchySettings {
     int levels = 3;                                                  ///< meshes, >= 1
     int coarsest_vertices = 500;                                     ///< by decimation
     ProlongationOperator prolongation = ProlongationOperator::shell; ///< affine: by decimation; loop: by loop
-    BendingOn bending_on = BendingOn::finest;
+    BendingOn bending_on = BendingOn::level; ///< made for shell; the other operators bend well on the finest
     HierarchySource source = HierarchySource::decimation;
 };
 

@@ -286,7 +286,11 @@ void describe(Visitor& v, HierarchySettings& h) {
     v.check(!by_loop || h.prolongation != ProlongationOperator::affine, "operator",
             "the operator affine needs levels made by decimation",
             "take loop, shell, blend or intrinsic, or set `source` to \"decimation\"");
-    v.field("bending_on", h.bending_on, "the mesh that carries the bending energy in previews");
+    if (h.prolongation != ProlongationOperator::shell && !v.lists_what_is_there())
+        h.bending_on = BendingOn::finest;
+    v.field("bending_on", h.bending_on,
+            "the mesh that carries the bending energy in previews; left out, it is finest with other operators than "
+            "shell");
 }
 
 template <typename Visitor>

@@ -52,11 +52,9 @@ private:
 
     void add_edge_vertex(int e, const LabelBetween& label_between) {
         const Edge& edge = connectivity_.edges()[at(e)];
-        const auto& odd = connectivity_.non_manifold_edges();
         const int a = coarse_.label[at(edge[0])], b = coarse_.label[at(edge[1])];
         const int label = a < 0 || b < 0 ? -1 : label_between(a, b);
-        smooth_edge_[at(e)] =
-            label < 0 && !connectivity_.is_boundary_edge(e) && !std::binary_search(odd.begin(), odd.end(), e);
+        smooth_edge_[at(e)] = label < 0 && !connectivity_.is_curve_edge(e);
         edge_vertex_[at(e)] = static_cast<int>(part_.size());
         part_.push_back(coarse_.part[at(edge[0])]);
         label_.push_back(label);
@@ -121,7 +119,7 @@ private:
             for (int end : connectivity_.edges()[at(e)])
                 entries_.emplace_back(row, end, smooth ? 3.0 / 8 : 1.0 / 2);
             if (smooth)
-                for (int corner : connectivity_.opposite()[at(e)])
+                for (int corner : connectivity_.opposite(e))
                     entries_.emplace_back(row, corner, 1.0 / 8);
         }
     }
