@@ -6,6 +6,7 @@
 #include <plisse/scene/hierarchy_folder.h>
 #include <plisse/scene/verify_hierarchy.h>
 #include <plisse/spatial/box.h>
+#include <plisse/subdivide/subdivide.h>
 
 #include "temporary_folder.h"
 
@@ -126,6 +127,28 @@ TEST(VerifyHierarchy, MapsOfAFlatSheetAreInverseToEachOther) {
     EXPECT_TRUE(level.holds());
     EXPECT_LT(level.distance, 1e-12);
     EXPECT_LT(level.largest_return_error, 1e-12);
+}
+
+TEST(VerifyHierarchy, HoldsForTwoSubdividedParts) {
+    GeneratorOptions options;
+    options.edge_length = 0.3;
+    const TriangleMesh sheet = generate_mesh(options);
+    const int n = sheet.vertex_count();
+    SubdivisionInput input;
+    input.rest.resize(3, 2 * n);
+    input.rest << sheet.positions, (sheet.positions.colwise() + Vec3(0, 1, 0));
+    input.surface.faces = sheet.faces;
+    for (const Face& face : sheet.faces)
+        input.surface.faces.push_back({face[0] + n, face[1] + n, face[2] + n});
+    input.surface.part.assign(static_cast<std::size_t>(n), 0);
+    input.surface.part.resize(static_cast<std::size_t>(2 * n), 1);
+    input.surface.label.assign(static_cast<std::size_t>(2 * n), -1);
+    const std::vector<LevelVerification> levels = verify_hierarchy(subdivide(input, 3));
+    ASSERT_EQ(levels.size(), 2u);
+    for (const LevelVerification& level : levels) {
+        EXPECT_TRUE(level.holds()) << level.level;
+        EXPECT_LT(level.distance, 1e-12) << "flat, and its boundary stays";
+    }
 }
 
 } // namespace

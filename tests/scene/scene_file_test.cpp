@@ -118,8 +118,21 @@ TEST(SceneFile, FillsInDefaults) {
     EXPECT_FALSE(s.bodies[0].material.strain_limit.has_value());
     EXPECT_EQ(s.gravity.at(0), Vec3(0, -9.81, 0));
     EXPECT_EQ(s.hierarchy.levels, 3);
+    EXPECT_EQ(s.hierarchy.bending_on, BendingOn::level);
     EXPECT_FALSE(s.solve.level.has_value());
     EXPECT_FALSE(s.solve.max_iterations_per_step.has_value());
+}
+
+TEST(SceneFile, BendingIsOnTheMeshThatSuitsTheOperator) {
+    const auto bending = [](const std::string& hierarchy) {
+        return parse(R"({"plisse": 1, "bodies": [{"mesh": "a.obj"}], "hierarchy": {)" + hierarchy + "}}")
+            .hierarchy.bending_on;
+    };
+    EXPECT_EQ(bending(R"("operator": "shell")"), BendingOn::level);
+    EXPECT_EQ(bending(R"("operator": "blend")"), BendingOn::finest);
+    EXPECT_EQ(bending(R"("source": "loop")"), BendingOn::finest);
+    EXPECT_EQ(bending(R"("operator": "blend", "bending_on": "level")"), BendingOn::level);
+    EXPECT_EQ(bending(R"("bending_on": "finest")"), BendingOn::finest);
 }
 
 TEST(SceneFile, ErrorsNameLineAndColumn) {

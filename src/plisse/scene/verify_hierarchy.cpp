@@ -51,11 +51,17 @@ Positions waved(const Positions& x, double diagonal) {
     return y;
 }
 
-void measure_weights(const HierarchyLevel& level, const HierarchyLevel& finest, LevelVerification& result) {
-    std::vector<bool> used(level.to_finest.size(), false);
-    for (const Face& face : finest.faces)
+/// Per vertex of a level: whether some face uses it.
+std::vector<bool> used_vertices(const HierarchyLevel& level) {
+    std::vector<bool> used(static_cast<std::size_t>(level.rest.cols()), false);
+    for (const Face& face : level.faces)
         for (int v : face)
             used[static_cast<std::size_t>(v)] = true;
+    return used;
+}
+
+void measure_weights(const HierarchyLevel& level, const HierarchyLevel& finest, LevelVerification& result) {
+    const std::vector<bool> used = used_vertices(finest);
     for (std::size_t v = 0; v < used.size(); ++v) {
         const Anchor& anchor = level.to_finest[v];
         if (used[v] && anchor.face < 0)
@@ -115,12 +121,15 @@ Positions images_on(const HierarchyLevel& level, const HierarchyLevel& finest) {
 std::vector<Anchor> places_on_finest(const Hierarchy& hierarchy, const HierarchyLevel& level) {
     if (!hierarchy.is_subdivided())
         return level.on_input;
-    std::vector<Anchor> places(static_cast<std::size_t>(level.rest.cols()));
+    std::vector<Anchor> places(level.vertex_ids.size());
+    std::vector<int> number(static_cast<std::size_t>(hierarchy.finest().rest.cols()), -1);
+    for (std::size_t v = 0; v < places.size(); ++v)
+        number[static_cast<std::size_t>(level.vertex_ids[v])] = static_cast<int>(v);
     const std::vector<Face>& faces = hierarchy.finest().faces;
     for (std::size_t f = 0; f < faces.size(); ++f)
         for (std::size_t k = 0; k < 3; ++k)
-            if (const auto v = static_cast<std::size_t>(faces[f][k]); v < places.size())
-                places[v] = {static_cast<int>(f), Vec3::Unit(static_cast<int>(k))};
+            if (const int v = number[static_cast<std::size_t>(faces[f][k])]; v >= 0)
+                places[static_cast<std::size_t>(v)] = {static_cast<int>(f), Vec3::Unit(static_cast<int>(k))};
     return places;
 }
 
@@ -128,11 +137,12 @@ std::vector<Anchor> places_on_finest(const Hierarchy& hierarchy, const Hierarchy
 void measure_return(const HierarchyLevel& level, const HierarchyLevel& finest, const std::vector<Anchor>& places,
                     double diagonal, LevelVerification& result) {
     const Positions images = images_on(level, finest);
+    const std::vector<bool> used = used_vertices(level);
     int returned = 0;
     for (std::size_t v = 0; v < places.size(); ++v) {
         const Anchor& anchor = places[v];
         if (anchor.face < 0) {
-            ++result.missing_ways_back;
+            result.missing_ways_back += used[v] ? 1 : 0;
             continue;
         }
         result.worst_weight = std::min(result.worst_weight, anchor.weights.minCoeff());
