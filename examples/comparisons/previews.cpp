@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,17 +101,29 @@ Contestant compete_directly(Model model, Context& context) {
     return contestant;
 }
 
+TriangleMesh body_on_level_0(const Hierarchy& hierarchy) {
+    const HierarchyLevel& level = hierarchy.levels.front();
+    std::vector<int> of_body, number(level.part.size(), -1);
+    for (std::size_t v = 0; v < level.part.size(); ++v)
+        if (level.part[v] == 0) {
+            number[v] = static_cast<int>(of_body.size());
+            of_body.push_back(static_cast<int>(v));
+        }
+    TriangleMesh mesh;
+    mesh.positions = level.rest(Eigen::all, of_body);
+    const auto numbered = [&](int v) { return number[static_cast<std::size_t>(v)]; };
+    for (const Face& face : level.faces)
+        if (numbered(face[0]) >= 0)
+            mesh.faces.push_back({numbered(face[0]), numbered(face[1]), numbered(face[2])});
+    return mesh;
+}
+
 /// The scene on the mesh that another hierarchy has on level 0, subdivided: equal counts where the levels of the other
 /// have four times the vertices of the next coarser.
 Contestant compete_by_loop(Scene scene, const Hierarchy& hierarchy, Context& context) {
     if (scene.bodies.size() != 1)
         throw InputError(scene.name, "it has several bodies", "compare a scene of one");
-    const HierarchyLevel& coarse = hierarchy.levels.front();
-    const auto count = std::count(coarse.part.begin(), coarse.part.end(), 0);
-    TriangleMesh mesh;
-    mesh.positions = coarse.rest.leftCols(count);
-    std::copy_if(coarse.faces.begin(), coarse.faces.end(), std::back_inserter(mesh.faces),
-                 [&](const Face& face) { return face[0] < count; });
+    const TriangleMesh mesh = body_on_level_0(hierarchy);
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / fmt::format("plisse_previews_{}.ply", getpid());
     write_ply(file, mesh);
