@@ -46,6 +46,9 @@ Prolongation prolongation_of(const ProlongArguments& arguments, const HierarchyF
     if (hierarchy.level_count() != static_cast<int>(files.levels.size()) || hierarchy.finest().faces != fine.faces)
         throw InputError(arguments.folder, "hierarchy.bin is not of the meshes beside it",
                          "write the folder again with `plisse hierarchy`");
+    if (hierarchy.collapses.empty())
+        throw InputError(arguments.folder, "its levels were made by subdivision, and affine needs collapses",
+                         "take shell, blend or intrinsic");
     return prolongation_to_finest(hierarchy, arguments.from, kind);
 }
 

@@ -295,5 +295,25 @@ TEST_F(Cli, HierarchyAndProlongGiveTheRestShapeBack) {
     expect_unusable(prolong_by("affine"), "hierarchy.bin");
 }
 
+TEST_F(Cli, HierarchyOfASceneMayBeMadeBySubdivision) {
+    write("scene.json", R"({"plisse": 1, "bodies": [{"mesh": {"generate": "sheet", "edge_length": 0.3}}],
+        "hierarchy": {"levels": 3, "source": "loop"}})");
+    const Outcome made = run({"hierarchy", at("scene.json"), "-o", at("levels"), "--verify"});
+    EXPECT_EQ(made.code, 0) << made.err << made.out;
+    const Json json = json_of("levels/hierarchy.json");
+    ASSERT_EQ(json["levels"].size(), 3u);
+    EXPECT_EQ(json["levels"][2]["faces"], 16 * json["levels"][0]["faces"].get<int>());
+    const std::vector<std::string> prolong{"prolong", at("levels"),   "--from",
+                                           "0",       "--positions",  at("levels/level-0.ply"),
+                                           "-o",      at("fine.ply"), "--operator"};
+    const auto by = [&](const std::string& kind) {
+        std::vector<std::string> arguments = prolong;
+        arguments.push_back(kind);
+        return arguments;
+    };
+    EXPECT_EQ(run(by("shell")).code, 0);
+    expect_unusable(by("affine"), "subdivision");
+}
+
 } // namespace
 } // namespace plisse

@@ -129,6 +129,9 @@ void Discretization::subdivide_model(int level_count) {
     input.kept_part.resize(at(model_.part_count()), 1);
     input.label_between = [&](int a, int b) { return labels.shared(a, b); };
     decimation_.hierarchy = subdivide(input, level_count);
+    for (const HierarchyLevel& level : hierarchy().levels)
+        decimation_.summary.wanted_vertices.push_back(static_cast<int>(level.rest.cols()));
+    decimation_.summary.reached_vertices = decimation_.summary.wanted_vertices;
     start_on_input_ = input.rest;
     start_on_input_.leftCols(body_vertex_count(model_)) = model_.start.leftCols(body_vertex_count(model_));
     model_ = finest_model(model_, hierarchy(), subdivided_start(finest()), handles_of_label_);

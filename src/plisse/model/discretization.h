@@ -30,7 +30,7 @@ public:
     /// On the finest level. By subdivision a vertex between others belongs to a handle or a load when all of those do,
     /// and attributes are left out.
     const Model& model() const { return model_; }
-    /// Of a subdivided mesh the hierarchy alone.
+    /// Of a subdivided mesh the hierarchy and its counts.
     const DecimationResult& decimation() const { return decimation_; }
     const Hierarchy& hierarchy() const { return decimation_.hierarchy; }
     const HierarchyLevel& mesh(int level) const { return hierarchy().levels[static_cast<std::size_t>(level)]; }
