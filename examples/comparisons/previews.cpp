@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <unistd.h>
 
+#include <Eigen/LU>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -71,6 +73,7 @@ struct Contestant {
     RunResult result;
     LastStates last;
     ProlongationOperator shown_by = ProlongationOperator::shell;
+    Positions on_input{}; ///< level 0's preview at the body's vertices as the scene gives them
 
     const LevelReport& level(std::size_t number) const { return result.report.levels.at(number); }
     Positions preview_on_finest(int from) const {
@@ -79,10 +82,54 @@ struct Contestant {
     }
 };
 
+/// The state of a subdivided mesh at places on its level 0.
+class SubdividedSurface {
+public:
+    SubdividedSurface(const Hierarchy& hierarchy, Positions finest) : hierarchy_(hierarchy), x_(std::move(finest)) {
+        const HierarchyLevel& fine = hierarchy.finest();
+        parts_.resize(hierarchy.levels.front().faces.size());
+        for (std::size_t f = 0; f < fine.faces.size(); ++f)
+            parts_[static_cast<std::size_t>(fine.face_ids[f])].push_back(static_cast<int>(f));
+    }
+
+    Vec3 at(const Anchor& place) const {
+        for (const int f : parts_[static_cast<std::size_t>(place.face)]) {
+            const Face& part = hierarchy_.finest().faces[static_cast<std::size_t>(f)];
+            Mat3 corners;
+            for (int k = 0; k < 3; ++k)
+                corners.col(k) = weights_in(place.face, part[static_cast<std::size_t>(k)]);
+            const Vec3 within = corners.partialPivLu().solve(place.weights);
+            if (within.minCoeff() >= -1e-9)
+                return x_(Eigen::all, part) * within;
+        }
+        throw std::logic_error("a place that no part of its face covers");
+    }
+
+private:
+    /// Of a finest vertex on the border of a coarse face, or in it: its weights there.
+    Vec3 weights_in(int coarse_face, int vertex) const {
+        const HierarchyLevel& coarse = hierarchy_.levels.front();
+        const Anchor& anchor = coarse.to_finest[static_cast<std::size_t>(vertex)];
+        const Face& face = coarse.faces[static_cast<std::size_t>(coarse_face)];
+        const Face& known = coarse.faces[static_cast<std::size_t>(anchor.face)];
+        Vec3 weights = Vec3::Zero();
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t j = 0; j < 3; ++j)
+                if (face[k] == known[j])
+                    weights[static_cast<int>(k)] = anchor.weights[static_cast<int>(j)];
+        return weights;
+    }
+
+    const Hierarchy& hierarchy_;
+    Positions x_;
+    std::vector<std::vector<int>> parts_; ///< per face of level 0: the finest faces it was divided into
+};
+
 /// Previews as the model makes them, refined to the finest result.
 Contestant compete(const std::string& label, const Model& model, Context& context) {
     Contestant contestant{label, {}, {}, model.hierarchy.prolongation};
     contestant.result = run(model, {}, contestant.last, context);
+    contestant.on_input = contestant.preview_on_finest(0);
     return contestant;
 }
 
@@ -98,7 +145,18 @@ Contestant compete_directly(Model model, Context& context) {
     RunOptions options;
     options.resume = &preview;
     contestant.result = run(model, options, contestant.last, context);
+    contestant.on_input = contestant.preview_on_finest(0);
     return contestant;
+}
+
+/// The finest mesh simulated for itself.
+Positions simulate_finest(Model model, Context& context) {
+    model.solve.method = Method::direct;
+    Recorder recorder;
+    const RunResult result = run(model, {}, recorder, context);
+    if (result.report.status != RunStatus::converged)
+        throw std::runtime_error("the finest mesh simulated for itself does not converge: " + result.report.message);
+    return result.positions;
 }
 
 TriangleMesh body_on_level_0(const Hierarchy& hierarchy) {
@@ -118,6 +176,25 @@ TriangleMesh body_on_level_0(const Hierarchy& hierarchy) {
     return mesh;
 }
 
+/// Finest positions of a subdivided hierarchy at the body's finest vertices of the one whose level 0 it divides.
+Positions seen_from(const Hierarchy& decimated, const Hierarchy& subdivided, const Positions& finest) {
+    const SubdividedSurface surface(subdivided, finest);
+    const HierarchyLevel& level = decimated.levels.front();
+    std::vector<int> face_of_body(level.faces.size());
+    int count = 0;
+    for (std::size_t f = 0; f < level.faces.size(); ++f)
+        face_of_body[f] = level.part[static_cast<std::size_t>(level.faces[f][0])] == 0 ? count++ : -1;
+    Positions seen = decimated.finest().rest;
+    for (std::size_t v = 0; v < level.to_finest.size(); ++v) {
+        Anchor place = level.to_finest[v];
+        if (place.face < 0 || face_of_body[static_cast<std::size_t>(place.face)] < 0)
+            continue;
+        place.face = face_of_body[static_cast<std::size_t>(place.face)];
+        seen.col(static_cast<Eigen::Index>(v)) = surface.at(place);
+    }
+    return seen;
+}
+
 /// The scene on the mesh that another hierarchy has on level 0, subdivided: equal counts where the levels of the other
 /// have four times the vertices of the next coarser.
 Contestant compete_by_loop(Scene scene, const Hierarchy& hierarchy, Context& context) {
@@ -135,7 +212,9 @@ Contestant compete_by_loop(Scene scene, const Hierarchy& hierarchy, Context& con
     scene.hierarchy.bending_on = BendingOn::finest;
     const Model model = build_model(scene, context);
     std::filesystem::remove(file);
-    return compete("loop", model, context);
+    Contestant contestant = compete("loop", model, context);
+    contestant.on_input = seen_from(hierarchy, contestant.last.hierarchy, contestant.on_input);
+    return contestant;
 }
 
 std::vector<Contestant> hold_contest(const Scene& scene, Model model, Context& context) {
@@ -163,12 +242,15 @@ double force_of(const LevelReport& level, const std::string& name) {
 
 class Table {
 public:
-    Table(const Model& model, Interest interest)
-        : interest_(std::move(interest)), diagonal_(bounding_box(model.mesh.positions).diagonal()) {}
+    /// truth: the finest mesh simulated for itself.
+    Table(const Model& model, Interest interest, Positions truth)
+        : interest_(std::move(interest)), body_vertices_(model.bodies.front().vertices.size()),
+          diagonal_(bounding_box(model.mesh.positions).diagonal()), truth_(std::move(truth)) {}
 
     void print_head() const {
-        fmt::print("| preview | off, mean, % of the diagonal, level by level | off, largest, % | {}{}iterations, level "
-                   "by level | s, all | ends |\n| --- | --- | --- |{}{} --- | --- | --- |\n",
+        fmt::print("| preview | off, mean, % of the diagonal, level by level | off, largest, % | level 0 off the "
+                   "finest mesh simulated for itself, mean, % | {}{}iterations, level "
+                   "by level | s, all | ends |\n| --- | --- | --- | --- |{}{} --- | --- | --- |\n",
                    interest_.curve ? "folds, level by level | " : "",
                    interest_.force_on.empty() ? "" : "force, N, level by level | ", interest_.curve ? " --- |" : "",
                    interest_.force_on.empty() ? "" : " --- |");
@@ -188,10 +270,10 @@ public:
             add(forces, fmt::format("{:.3g}", force_of(levels[l], interest_.force_on)));
             add(iterations, std::to_string(levels[l].newton_iterations));
         }
-        fmt::print("| {} | {} | {} | {}{}{} | {:.0f} | {}, {} pairs |\n", contestant.label, mean, largest,
-                   interest_.curve ? folds + " | " : "", interest_.force_on.empty() ? "" : forces + " | ", iterations,
-                   contestant.result.report.wall_seconds, run_status_name(contestant.result.report.status),
-                   contestant.result.report.intersecting_pairs);
+        fmt::print("| {} | {} | {} | {} | {}{}{} | {:.0f} | {}, {} pairs |\n", contestant.label, mean, largest,
+                   percent(off_truth(contestant)), interest_.curve ? folds + " | " : "",
+                   interest_.force_on.empty() ? "" : forces + " | ", iterations, contestant.result.report.wall_seconds,
+                   run_status_name(contestant.result.report.status), contestant.result.report.intersecting_pairs);
         std::fflush(stdout);
     }
 
@@ -205,15 +287,23 @@ private:
                            is_last ? contestant.result.positions : contestant.preview_on_finest(level));
     }
 
+    /// In place, m.
+    double off_truth(const Contestant& contestant) const {
+        const auto away = contestant.on_input.leftCols(body_vertices_) - truth_.leftCols(body_vertices_);
+        return away.colwise().norm().mean();
+    }
+
     Interest interest_;
+    int body_vertices_;
     double diagonal_; ///< m
+    Positions truth_;
 };
 
 void compare(const std::string& file) {
     Context context;
     const Scene scene = read_scene(file);
     const Model model = build_model(scene, context);
-    const Table table(model, read_interest(file));
+    const Table table(model, read_interest(file), simulate_finest(model, context));
     table.print_head();
     for (const Contestant& contestant : hold_contest(scene, model, context))
         table.print(contestant);
