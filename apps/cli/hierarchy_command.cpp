@@ -165,6 +165,9 @@ Built build_from_mesh(const HierarchyArguments& arguments) {
 Built build_from_scene(const HierarchyArguments& arguments) {
     Scene scene = read_scene(arguments.input);
     scene.hierarchy.levels = arguments.levels.value_or(scene.hierarchy.levels);
+    if (arguments.coarsest && scene.hierarchy.source == HierarchySource::loop)
+        throw InputError("--coarsest", "the scene's levels are made by subdivision, from its mesh as level 0",
+                         "leave it out, or set `source` to \"decimation\"");
     scene.hierarchy.coarsest_vertices = arguments.coarsest.value_or(scene.hierarchy.coarsest_vertices);
     Console console(ProgressStyle::plain);
     const Model model = build_model(scene, console);

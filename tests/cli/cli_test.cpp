@@ -313,6 +313,7 @@ TEST_F(Cli, HierarchyOfASceneMayBeMadeBySubdivision) {
     };
     EXPECT_EQ(run(by("shell")).code, 0);
     expect_unusable(by("affine"), "subdivision");
+    expect_unusable({"hierarchy", at("scene.json"), "--coarsest", "20"}, "--coarsest");
 }
 
 } // namespace

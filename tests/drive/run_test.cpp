@@ -2,44 +2,15 @@
 
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include <plisse/base/parallel.h>
-#include <plisse/drive/run.h>
 
-#include "exact_intersections.h"
 #include "small_models.h"
+#include "witness.h"
 
 using namespace plisse;
 
 namespace {
-
-/// Keeps what a run says; can cancel it after some checkpoints.
-struct Witness : Recorder {
-    explicit Witness(Context* cancelled = nullptr, int checkpoints_before_cancel = 0)
-        : context(cancelled), left(checkpoints_before_cancel) {}
-    void on_hierarchy(const Hierarchy& h) override { hierarchy = h; }
-    void on_frame(const Frame& frame) override {
-        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(frame.level)];
-        intersections += count_intersections(*frame.positions, level, 1);
-    }
-    void on_checkpoint(const Checkpoint& checkpoint) override {
-        last = checkpoint;
-        if (context && --left == 0)
-            context->cancel();
-    }
-
-    Context* context;
-    int left;
-    Hierarchy hierarchy;
-    int intersections = 0;
-    std::optional<Checkpoint> last;
-};
-
-RunResult run_to_end(const Model& model, Witness& witness, const RunOptions& options = {}) {
-    Context context;
-    return run(model, options, witness, context);
-}
 
 TEST(Run, DrapesProgressivelyWithoutAnIntersection) {
     const Model model = small_drape();

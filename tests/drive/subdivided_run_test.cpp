@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 
 #include <plisse/base/parallel.h>
 #include <plisse/drive/refinement_targets.h>
-#include <plisse/drive/run.h>
 #include <plisse/drive/subdivided_state.h>
 #include <plisse/spatial/intersections.h>
 
-#include "exact_intersections.h"
 #include "small_models.h"
+#include "witness.h"
 
 using namespace plisse;
 
@@ -55,32 +53,6 @@ Model filled_ball() {
     model.contact.distance = 2e-3;
     subdivide_by_loop(model, 3);
     return model;
-}
-
-struct Witness : Recorder {
-    explicit Witness(Context* cancelled = nullptr, int checkpoints_before_cancel = 0)
-        : context(cancelled), left(checkpoints_before_cancel) {}
-    void on_hierarchy(const Hierarchy& h) override { hierarchy = h; }
-    void on_frame(const Frame& frame) override {
-        const HierarchyLevel& level = hierarchy.levels[static_cast<std::size_t>(frame.level)];
-        intersections += count_intersections(*frame.positions, level, 1);
-        refined += frame.phase == "refine";
-    }
-    void on_checkpoint(const Checkpoint& checkpoint) override {
-        last = checkpoint;
-        if (context && --left == 0)
-            context->cancel();
-    }
-    Context* context;
-    int left;
-    Hierarchy hierarchy;
-    int intersections = 0, refined = 0;
-    std::optional<Checkpoint> last;
-};
-
-RunResult run_to_end(const Model& model, Witness& witness, const RunOptions& options = {}) {
-    Context context;
-    return run(model, options, witness, context);
 }
 
 TEST(SubdividedState, ArrivesWhereNothingIsInTheWay) {

@@ -82,7 +82,7 @@ void Patch::find_sheets() {
         return;
     }
     sheets.resize(before_.size());
-    std::iota(sheets.begin(), sheets.end(), 0); // for now the number of some face of the sheet
+    std::iota(sheets.begin(), sheets.end(), 0); // a sheet goes by one of its faces until all are known
     join_within_sheets(i, around_i_);
     join_within_sheets(j, around_j_);
     std::vector<int> with_dead;

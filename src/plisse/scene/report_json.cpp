@@ -100,12 +100,11 @@ LevelReport level_from(const Json& json) {
     level.residual = number_or_infinity(json.at("residual"));
     level.to_final = {number_or_infinity(json.at("to_final").at("mean")),
                       number_or_infinity(json.at("to_final").at("largest"))};
-    if (const auto found = json.find("too_coarse"); found != json.end()) { // older reports have none
-        level.too_coarse = {found->at("share").get<double>(), number_or_infinity(found->at("worst")),
-                            number_or_infinity(found->at("turn")), found->at("edge").get<double>(),
-                            vector_from(found->at("place"))};
-        level.estimated_turn = number_or_infinity(found->at("estimated_turn"));
-    }
+    const Json& coarse = json.at("too_coarse");
+    level.too_coarse = {coarse.at("share").get<double>(), number_or_infinity(coarse.at("worst")),
+                        number_or_infinity(coarse.at("turn")), coarse.at("edge").get<double>(),
+                        vector_from(coarse.at("place"))};
+    level.estimated_turn = number_or_infinity(coarse.at("estimated_turn"));
     const Json& energy = json.at("energy");
     level.energy.elastic = number_or_infinity(energy.at("elastic"));
     level.energy.strain_limit = number_or_infinity(energy.at("strain_limit"));
