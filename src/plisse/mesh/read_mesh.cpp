@@ -21,14 +21,16 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-std::string read_bytes(const std::filesystem::path& path) {
+} // namespace
+
+std::string read_mesh_bytes(const std::filesystem::path& path, const std::string& remedy) {
     const std::string file = path.string();
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status))
-        throw InputError(file, "no such file", std::string("give the path of a mesh file in ") + formats);
+        throw InputError(file, "no such file", remedy);
     if (std::filesystem::is_directory(status))
-        throw InputError(file, "is a folder", std::string("give the path of a mesh file in ") + formats);
+        throw InputError(file, "is a folder", remedy);
     std::ifstream stream(path, std::ios::binary);
     std::string bytes;
     const auto size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
@@ -41,8 +43,6 @@ std::string read_bytes(const std::filesystem::path& path) {
         throw InputError(file, "cannot be read", "check the permissions of the file");
     return bytes;
 }
-
-} // namespace
 
 Positions to_positions(const std::vector<Vec3>& points) {
     Positions positions(3, static_cast<Eigen::Index>(points.size()));
@@ -76,7 +76,7 @@ MeshFile parse_mesh(std::string_view bytes, const std::filesystem::path& path) {
 }
 
 MeshFile read_mesh(const std::filesystem::path& path) {
-    return parse_mesh(read_bytes(path), path);
+    return parse_mesh(read_mesh_bytes(path, std::string("give the path of a mesh file in ") + formats), path);
 }
 
 } // namespace plisse

@@ -22,20 +22,25 @@ public:
     ObjReader(std::string_view bytes, const std::string& file)
         : lines_(bytes, file, '#', TextLines::Continuation::backslash), file_(file) {}
 
+    ObjPolygons read_polygons() {
+        read_statements();
+        return std::move(polygons_);
+    }
+
     MeshFile read() {
-        while (lines_.next())
-            read_statement();
-        check_forward_references();
+        read_statements();
+        for (std::size_t p = 0; p < polygons_.lines.size(); ++p)
+            fan_.add(polygons_.polygon(p));
         MeshFile result;
-        result.mesh.positions = to_positions(points_);
+        result.mesh.positions = to_positions(polygons_.points);
         add_colours(result.mesh);
         add_texture_coordinates(result);
-        polygons_.add_note(result.notes);
+        fan_.add_note(result.notes);
         if (unknown_count_ > 0)
             result.notes.push_back(std::to_string(unknown_count_) +
                                    " lines that are no OBJ statement passed over, the first is line " +
                                    std::to_string(unknown_line_));
-        result.mesh.faces = std::move(polygons_.faces());
+        result.mesh.faces = std::move(fan_.faces());
         return result;
     }
 
@@ -46,6 +51,12 @@ private:
         int line;
         bool texture;
     };
+
+    void read_statements() {
+        while (lines_.next())
+            read_statement();
+        check_forward_references();
+    }
 
     void read_statement() {
         const std::string_view keyword = lines_.words()[0];
@@ -62,7 +73,7 @@ private:
     }
 
     void read_vertex() {
-        points_.push_back(lines_.point(1));
+        polygons_.points.push_back(lines_.point(1));
         const std::size_t extra = lines_.words().size() - 4;
         if (extra != 3 && extra != 0 && extra != 1 && extra != 4)
             lines_.fail("a vertex with " + std::to_string(3 + extra) + " numbers",
@@ -84,16 +95,16 @@ private:
         const auto words = lines_.words();
         if (words.size() < 4)
             lines_.fail("a face with " + std::to_string(words.size() - 1) + " corners", "give at least three corners");
-        corners_.clear();
         for (std::size_t k = 1; k < words.size(); ++k)
             read_corner(words[k]);
-        polygons_.add(corners_);
+        polygons_.starts.push_back(static_cast<int>(polygons_.corners.size()));
+        polygons_.lines.push_back(lines_.line());
     }
 
     /// v, v/vt, v//vn or v/vt/vn. Normals are not used, so only the form of their index is checked.
     void read_corner(std::string_view word) {
         const std::size_t first = word.find('/');
-        corners_.push_back(resolve(word, word.substr(0, first), false));
+        polygons_.corners.push_back(resolve(word, word.substr(0, first), false));
         int texture = -1;
         if (first != word.npos) {
             const std::string_view rest = word.substr(first + 1);
@@ -105,7 +116,7 @@ private:
                 bad_corner(word);
         }
         corner_textures_.push_back(texture);
-        textures_match_ = textures_match_ && texture == corners_.back();
+        textures_match_ = textures_match_ && texture == polygons_.corners.back();
     }
 
     [[noreturn]] void bad_corner(std::string_view word) const {
@@ -117,7 +128,7 @@ private:
         long long index = 0;
         if (!parse_integer(word, index))
             bad_corner(corner);
-        const auto known = static_cast<long long>(texture ? texture_points_.size() : points_.size());
+        const auto known = static_cast<long long>(texture ? texture_points_.size() : polygons_.points.size());
         const char* kind = texture ? "texture point " : "vertex ";
         if (index == 0 || index < -known)
             lines_.fail(std::string("a face refers to ") + kind + std::to_string(index) + ", of " +
@@ -135,7 +146,7 @@ private:
 
     void check_forward_references() const {
         for (const Forward& reference : forward_) {
-            const std::size_t count = reference.texture ? texture_points_.size() : points_.size();
+            const std::size_t count = reference.texture ? texture_points_.size() : polygons_.points.size();
             if (static_cast<std::size_t>(reference.index) > count)
                 throw InputError(file_ + ":" + std::to_string(reference.line),
                                  std::string("a face refers to ") + (reference.texture ? "texture point " : "vertex ") +
@@ -145,7 +156,7 @@ private:
     }
 
     void add_colours(TriangleMesh& mesh) const {
-        if (colours_.empty() || colours_.size() != 3 * points_.size())
+        if (colours_.empty() || colours_.size() != 3 * polygons_.points.size())
             return;
         static constexpr const char* names[3] = {"red", "green", "blue"};
         for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -159,7 +170,7 @@ private:
     void add_texture_coordinates(MeshFile& result) const {
         if (std::all_of(corner_textures_.begin(), corner_textures_.end(), [](int texture) { return texture < 0; }))
             return;
-        if (textures_match_ && texture_points_.size() == points_.size()) {
+        if (textures_match_ && texture_points_.size() == polygons_.points.size()) {
             MeshAttribute uv{"uv", MeshAttribute::Domain::vertex, 2, {}};
             for (const auto& point : texture_points_)
                 uv.values.insert(uv.values.end(), point.begin(), point.end());
@@ -174,26 +185,29 @@ private:
                 texture < 0 ? std::array<double, 2>{0, 0} : texture_points_[static_cast<std::size_t>(texture)];
             values.insert(values.end(), point.begin(), point.end());
         }
-        result.mesh.attributes.push_back(polygons_.corner_attribute("uv", 2, values));
+        result.mesh.attributes.push_back(fan_.corner_attribute("uv", 2, values));
         if (missing > 0)
             result.notes.push_back(std::to_string(missing) + " face corners without texture coordinates given (0, 0)");
     }
 
     TextLines lines_;
     std::string file_;
-    std::vector<Vec3> points_;
+    ObjPolygons polygons_;
     std::vector<double> colours_;
     std::vector<std::array<double, 2>> texture_points_;
-    std::vector<int> corners_;
     std::vector<int> corner_textures_; ///< texture point of every polygon corner, -1 for none
     bool textures_match_ = true;       ///< every corner has the texture point of its vertex's number
-    PolygonFan polygons_;
+    PolygonFan fan_;
     std::vector<Forward> forward_;
     int unknown_count_ = 0;
     int unknown_line_ = 0;
 };
 
 } // namespace
+
+ObjPolygons read_obj_polygons(std::string_view bytes, const std::string& file) {
+    return ObjReader(bytes, file).read_polygons();
+}
 
 MeshFile read_obj(std::string_view bytes, const std::string& file) {
     return ObjReader(bytes, file).read();
