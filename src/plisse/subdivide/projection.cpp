@@ -128,21 +128,34 @@ private:
     std::vector<Row> rows_;
 };
 
+VertexWeights identity(Eigen::Index size) {
+    VertexWeights result(size, size);
+    result.setIdentity();
+    return result;
+}
+
 } // namespace
 
 VertexWeights reverse_subdivision(const ControlMesh& coarse, const CatmullClarkStep& step) {
     return ReverseSubdivision(coarse, step).run();
 }
 
-LeastSquaresProjection::LeastSquaresProjection(VertexWeights subdivision) : subdivision_(std::move(subdivision)) {
+LeastSquaresProjection::LeastSquaresProjection(VertexWeights subdivision)
+    : LeastSquaresProjection(subdivision, identity(subdivision.rows()), identity(subdivision.cols())) {}
+
+LeastSquaresProjection::LeastSquaresProjection(VertexWeights subdivision, VertexWeights to_fine_points,
+                                               VertexWeights from_coarse_points)
+    : subdivision_(std::move(subdivision)), to_fine_points_(std::move(to_fine_points)),
+      from_coarse_points_(std::move(from_coarse_points)) {
     const VertexWeights normal = subdivision_.transpose() * subdivision_;
     factor_ = std::make_shared<const Eigen::SimplicialLLT<VertexWeights>>(normal);
     assert(factor_->info() == Eigen::Success);
 }
 
 Positions LeastSquaresProjection::apply(const ConstPositions& fine) const {
-    const Eigen::MatrixXd right_hand_side = subdivision_.transpose() * fine.transpose();
-    return factor_->solve(right_hand_side).transpose();
+    const Eigen::MatrixXd points = to_fine_points_ * fine.transpose();
+    const Eigen::MatrixXd nearest = factor_->solve(subdivision_.transpose() * points);
+    return (from_coarse_points_ * nearest).transpose();
 }
 
 } // namespace plisse

@@ -23,12 +23,15 @@ VertexWeights reverse_subdivision(const ControlMesh& coarse, const CatmullClarkS
 class LeastSquaresProjection {
 public:
     explicit LeastSquaresProjection(VertexWeights subdivision);
+    /// The same for other variables: with the maps from the fine ones to control points, and from the coarse control
+    /// points.
+    LeastSquaresProjection(VertexWeights subdivision, VertexWeights to_fine_points, VertexWeights from_coarse_points);
 
     /// One column for every coarse vertex from one for every fine one.
     Positions apply(const ConstPositions& fine) const;
 
 private:
-    VertexWeights subdivision_;
+    VertexWeights subdivision_, to_fine_points_, from_coarse_points_;
     std::shared_ptr<const Eigen::SimplicialLLT<VertexWeights>> factor_; ///< shared, as it cannot be copied
 };
 
