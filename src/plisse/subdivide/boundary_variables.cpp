@@ -138,6 +138,10 @@ private:
                     place = variables.insert(place, static_cast<int>(entry.col()));
                 entries.emplace_back(static_cast<int>(place - variables.begin()), static_cast<int>(p), entry.value());
             }
+        // T's rows are ordered by vertex numbers, which faces alike do not share.
+        std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) {
+            return std::pair(a.col(), a.row()) < std::pair(b.col(), b.row());
+        });
         std::vector<double> key = {static_cast<double>(basis_.kind(element))};
         for (const auto& entry : entries)
             key.insert(key.end(), {static_cast<double>(entry.row()), static_cast<double>(entry.col()), entry.value()});

@@ -1,6 +1,8 @@
 #include <plisse/subdivide/control_mesh.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -87,8 +89,8 @@ private:
         return slot;
     }
     void join(int a, int b) {
-        const auto [low, high] = std::minmax(root(a), root(b));
-        joined_[at(high)] = low;
+        const int first = root(a), second = root(b);
+        joined_[at(std::max(first, second))] = std::min(first, second);
     }
 
     void join_slots() {
@@ -144,35 +146,37 @@ private:
         Positions& p = cage_.positions;
         p.resize(3, cage_.mesh.vertex_count);
         p.leftCols(quads_.vertex_count()) = quads_.positions;
-        VecX corners_sharing = VecX::Zero(cage_.mesh.vertex_count);
         for (const BoundaryVertex& b : boundary_)
             place_beyond_edges(b);
+        place_at_reentrant_corners();
         for (const BoundaryVertex& b : boundary_)
-            if (b.faces == 3) {
-                const int g = ghost(start_slot(b.in));
-                const Vec3 place = p.col(connectivity_.from(b.in)) + p.col(connectivity_.to(b.out)) - p.col(b.vertex);
-                corners_sharing[g] += 1;
-                if (corners_sharing[g] == 1)
-                    p.col(g).setZero();
-                p.col(g) += place;
-            }
-        for (int g = 0; g < cage_.mesh.vertex_count; ++g)
-            if (corners_sharing[g] > 1)
-                p.col(g) /= corners_sharing[g];
+            if (b.faces == 1) // p = 2 p_0 - p_1 along both sides, with the twist of the face
+                p.col(b.corner_ghost) = p.col(ghost(end_slot(b.in))) + p.col(ghost(start_slot(b.out))) +
+                                        p.col(connectivity_.to(QuadConnectivity::next(b.out))) -
+                                        p.col(connectivity_.from(b.in)) - p.col(connectivity_.to(b.out));
     }
 
     void place_beyond_edges(const BoundaryVertex& b) {
         Positions& p = cage_.positions;
-        const Vec3 here = p.col(b.vertex);
-        const Vec3 before = p.col(connectivity_.from(b.in)), after = p.col(connectivity_.to(b.out));
+        const auto reflected = [&](int v) { return 2 * p.col(b.vertex) - p.col(v); };
         if (b.faces == 2)
-            p.col(ghost(start_slot(b.out))) = 2 * here - p.col(connectivity_.to(connectivity_.rotated(b.out)));
-        if (b.faces != 1)
-            return;
-        p.col(ghost(start_slot(b.out))) = 2 * here - before;
-        p.col(ghost(end_slot(b.in))) = 2 * here - after;
-        const Vec3 opposite = p.col(connectivity_.to(QuadConnectivity::next(b.out)));
-        p.col(b.corner_ghost) = 4 * here - 2 * before - 2 * after + opposite;
+            p.col(ghost(start_slot(b.out))) = reflected(connectivity_.to(connectivity_.rotated(b.out)));
+        if (b.faces == 1) {
+            p.col(ghost(start_slot(b.out))) = reflected(connectivity_.from(b.in));
+            p.col(ghost(end_slot(b.in))) = reflected(connectivity_.to(b.out));
+        }
+    }
+
+    void place_at_reentrant_corners() {
+        Positions& p = cage_.positions;
+        std::map<int, std::vector<Vec3>> places; // of each ghost
+        for (const BoundaryVertex& b : boundary_)
+            if (b.faces == 3)
+                places[ghost(start_slot(b.in))].emplace_back(p.col(connectivity_.from(b.in)) +
+                                                             p.col(connectivity_.to(b.out)) - p.col(b.vertex));
+        for (const auto& [g, of_corners] : places)
+            p.col(g) = std::accumulate(of_corners.begin(), of_corners.end(), Vec3(Vec3::Zero())) /
+                       static_cast<double>(of_corners.size());
     }
 
     const QuadMesh& quads_;

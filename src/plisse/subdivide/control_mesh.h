@@ -45,10 +45,10 @@ struct ControlCage {
 
 /// The control mesh whose domain is `quads`, in its order. On the boundary 2, 3 or 4 edges (1, 2 or 3 faces) make a
 /// convex corner, a straight piece and a re-entrant corner. Ghost positions continue the mesh, p_-1 = 2 p_0 - p_1, at
-/// convex corners along both sides. At a re-entrant corner p between a and b it is a + b - p (the mean of these where
-/// corners share the ghost): of all rules the one that keeps any grid of straight lines, evenly spaced or not, one.
-/// Throws InputError (with an empty place) for more faces at a boundary vertex, for three that make no re-entrant
-/// corner (225 degrees or more), and for slots and holes one face wide.
+/// convex corners along both sides, so an even flat grid stays one. At a re-entrant corner p between a and b the ghost
+/// is a + b - p (the mean where corners share it): so a notch one face wide keeps the lines of its grid even where
+/// these are not evenly spaced. Throws InputError (with an empty place) for more faces at a boundary vertex, for three
+/// that make no re-entrant corner (225 degrees or more), and for slots and holes one face wide.
 ControlCage with_ghost_ring(const QuadMesh& quads);
 
 } // namespace plisse
