@@ -23,8 +23,10 @@ public:
     ControlVariables run() {
         for (int v = 0; v < mesh_.vertex_count; ++v)
             to_[at(v)][v] = from_[at(v)][v] = 1;
+        // In this order each rests on those before it.
+        replace_at_reentrant_corners();
         const std::vector<Ghost> ghosts = find_ghosts(mesh_);
-        for (Ghost::Kind kind : {Ghost::Kind::edge, Ghost::Kind::corner}) // corners need the others
+        for (Ghost::Kind kind : {Ghost::Kind::edge, Ghost::Kind::corner})
             for (int i = 0; i < mesh_.ghost_count(); ++i) {
                 if (ghosts[at(i)].kind != kind)
                     continue;
@@ -37,6 +39,59 @@ public:
 
 private:
     using Row = std::map<int, double>;
+
+    /// The vertices around a re-entrant corner, named as in the header.
+    struct ReentrantCorner {
+        int p, a, g, b, b_i, l, f, d, a_i;
+        std::array<int, 5> replaced() const { return {l, d, a, b, g}; }
+        std::array<int, 4> others() const { return {p, f, a_i, b_i}; }
+    };
+
+    std::vector<ReentrantCorner> reentrant_corners() const {
+        std::vector<ReentrantCorner> corners;
+        for (std::size_t f = at(mesh_.domain_face_count); f < mesh_.faces.size(); ++f)
+            for (int k = 0; k < 4; ++k) {
+                const int side = 4 * static_cast<int>(f) + k;
+                const int g = connectivity_.to(QuadConnectivity::next(side));
+                const auto is_domain = [&](int h) { return !mesh_.is_ghost(connectivity_.from(h)); };
+                if (!mesh_.is_ghost(g) || !is_domain(side) || !is_domain(QuadConnectivity::next(side)) ||
+                    !is_domain(QuadConnectivity::previous(side)))
+                    continue;
+                std::array<int, 8> ring{};
+                int spoke = side;
+                for (std::size_t i = 0; i < 8; i += 2, spoke = connectivity_.rotated(spoke)) {
+                    ring[i] = connectivity_.to(spoke);
+                    ring[i + 1] = connectivity_.to(QuadConnectivity::next(spoke));
+                }
+                corners.push_back(
+                    {connectivity_.from(side), ring[0], ring[1], ring[2], ring[3], ring[4], ring[5], ring[6], ring[7]});
+            }
+        return corners;
+    }
+
+    void replace_at_reentrant_corners() {
+        const std::vector<ReentrantCorner> corners = reentrant_corners();
+        std::map<int, int> replacing, using_otherwise; // corners, per vertex
+        for (const ReentrantCorner& c : corners) {
+            for (int v : c.replaced())
+                ++replacing[v];
+            for (int v : c.others())
+                ++using_otherwise[v];
+        }
+        for (const ReentrantCorner& c : corners) {
+            const auto replaced = c.replaced();
+            const auto others = c.others();
+            if (std::any_of(replaced.begin(), replaced.end(),
+                            [&](int v) { return replacing[v] > 1 || using_otherwise.contains(v); }) ||
+                std::any_of(others.begin(), others.end(), [&](int v) { return replacing.contains(v); }))
+                continue;
+            replace(c.l, {{c.b_i, 1}, {c.l, 4}, {c.f, 1}});
+            replace(c.d, {{c.a_i, 1}, {c.d, 4}, {c.f, 1}});
+            replace(c.a, {{c.l, 1}, {c.p, 4}, {c.a, 1}});
+            replace(c.b, {{c.d, 1}, {c.p, 4}, {c.b, 1}});
+            replace(c.g, {{c.g, 1}, {c.a, 2}, {c.b, 2}, {c.a_i, 0.5}, {c.b_i, 0.5}});
+        }
+    }
 
     /// Six times the coefficient of the boundary curve at a vertex.
     Row curve_coefficient(int ghost, int vertex) const {
@@ -58,19 +113,20 @@ private:
         return row;
     }
 
-    /// Puts a sum of control points, in which the ghost's weight is 1, divided by the sum of weights in its place.
-    void replace(int ghost, const Row& sum) {
+    /// Puts the mean of control points by these weights in the place of one of them.
+    void replace(int replaced, const Row& weights) {
         double total = 0;
-        for (const auto& [vertex, weight] : sum)
+        for (const auto& [vertex, weight] : weights)
             total += weight;
-        Row& to = to_[at(ghost)];
-        Row& from = from_[at(ghost)];
-        to = {{ghost, total}};
-        for (const auto& [vertex, weight] : sum) {
+        const double own = weights.at(replaced);
+        Row& to = to_[at(replaced)];
+        Row& from = from_[at(replaced)];
+        to = {{replaced, total / own}};
+        for (const auto& [vertex, weight] : weights) {
             from[vertex] = weight / total;
-            if (vertex != ghost)
+            if (vertex != replaced)
                 for (const auto& [other, factor] : to_[at(vertex)])
-                    to[other] -= weight * factor;
+                    to[other] -= weight / own * factor;
         }
     }
 
