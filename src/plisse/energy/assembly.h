@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include <plisse/energy/colored_elements.h>
 #include <plisse/energy/element_energy.h>
-#include <plisse/linalg/coloring.h>
 #include <plisse/linalg/newton_system.h>
 
 namespace plisse {
@@ -27,8 +27,7 @@ public:
 };
 
 /// Sums an ElementEnergy and its derivatives over its elements, in parallel, with the same bits for any number of
-/// threads: elements are grouped and the groups coloured once, so that those of one colour share no vertex, and colours
-/// are added in turn.
+/// threads.
 class ElementAssembly : public AssembledEnergy {
 public:
     /// Refers to the energy, which must outlive it; its elements and their vertices must not change.
@@ -36,19 +35,14 @@ public:
 
     double value(const Positions& x) const override;
     void add_gradient(const Positions& x, Positions& gradient) const override;
-    void place_in(const NewtonSystem& system) override;
+    void place_in(const NewtonSystem& system) override { elements_.place_in(system); }
     /// Each element's is projected when `project` is set.
     void add_hessian(const Positions& x, NewtonSystem& system, bool project) const override;
-    std::vector<Edge> pairs() const override;
+    std::vector<Edge> pairs() const override { return elements_.pairs(); }
 
 private:
-    template <typename Body>
-    void for_each_element(const Body& body) const;
-
     const ElementEnergy& energy_;
-    ColoredGroups groups_;
-    std::vector<int> block_numbers_;
-    std::vector<std::size_t> block_starts_; ///< of each element's in block_numbers_
+    ColoredElements elements_;
 };
 
 } // namespace plisse

@@ -66,8 +66,13 @@ public:
     }
     template <typename Derived>
     void add(std::span<const int> vertices, const int* numbers, const Eigen::MatrixBase<Derived>& element) {
+        add_blocks(vertices, numbers, [&](int i, int j) { return element.template block<3, 3>(3 * i, 3 * j); });
+    }
+    /// The same for an element matrix whose blocks are made when they are asked for: block(i, j) of local vertices.
+    template <typename Block>
+    void add_blocks(std::span<const int> vertices, const int* numbers, const Block& block) {
         for_each_lower_block(vertices, [&](int i, int j, int local_i, int local_j) {
-            add_block_at(*numbers++, i, j, element.template block<3, 3>(3 * local_i, 3 * local_j));
+            add_block_at(*numbers++, i, j, block(local_i, local_j));
         });
     }
 
