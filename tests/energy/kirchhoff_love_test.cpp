@@ -101,16 +101,15 @@ SurfaceBasis padded(const SplineGrid& grid, const SurfaceBasis& basis) {
         m->conservativeResize(17, Eigen::NoChange);
         m->row(16).setZero();
     }
-    std::vector<SurfaceBasis::FaceData> faces;
+    SurfaceBasis more(grid.vertex_count(), basis.weights());
+    const int kind = more.add_kind(stencil);
     for (int j = 0; j < grid.ny; ++j)
         for (int i = 0; i < grid.nx; ++i) {
-            faces.push_back({grid.control_points(i, j), 0});
-            faces.back().control_points.push_back(grid.vertex(i == 0 ? grid.nx + 2 : 0, 0));
+            std::vector<int> control = grid.control_points(i, j);
+            control.push_back(grid.vertex(i == 0 ? grid.nx + 2 : 0, 0));
+            more.add_element(kind, control);
         }
-    std::vector<double> weights;
-    for (int p = 0; p < basis.point_count(); ++p)
-        weights.push_back(basis.weight(p));
-    return {grid.vertex_count(), faces, {stencil}, weights};
+    return more;
 }
 
 TEST(KirchhoffLoveShell, FacesMayHaveAnyNumberOfControlPoints) {

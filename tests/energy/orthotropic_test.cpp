@@ -20,8 +20,7 @@ std::vector<Named> all_materials() {
 
 TEST(ResponseFunction, FirstWeightOfTheTableFollowsFromASlopeOfOne) {
     const OrthotropicMaterial material = denim_table();
-    EXPECT_NEAR(material.responses[0].terms()[0].mu, -4617.79, 0.5e-2 + 1);
-    EXPECT_NEAR(material.responses[0].terms()[0].mu, 1 - (-1482.1 + 276.43 + 2407.67 + 3416.79), 1e-11);
+    EXPECT_NEAR(material.responses[0].terms()[0].mu, -4617.79, 1e-9);
     EXPECT_NEAR(material.responses[2].terms()[0].mu, 84.882, 1e-9);
     EXPECT_NEAR(material.responses[3].terms()[0].mu, -10.87, 1e-9);
     for (const ResponseFunction& response : material.responses)
@@ -43,17 +42,17 @@ TEST(ResponseFunction, IsTheSumOfPowersWithinItsLimit) {
 }
 
 TEST(ResponseFunction, GoesOnAsAParabolaThatBendsUpward) {
-    for (const ResponseFunction& response : denim_table().responses)
-        for (double sign : {-1.0, 1.0}) {
-            const double limit = sign * ResponseFunction::limit;
-            const auto inside = response.slopes(limit), outside = response.slopes(limit * (1 + 1e-12));
-            EXPECT_NEAR(outside.first, inside.first, 1e-9 * (1 + std::abs(inside.first)));
-            EXPECT_NEAR(response.value(limit * (1 + 1e-12)), response.value(limit), 1e-12);
-            EXPECT_EQ(outside.second, std::max(inside.second, 0.0));
-            const auto far = response.slopes(3 * limit), farther = response.slopes(5 * limit);
-            EXPECT_EQ(far.second, farther.second);
-            EXPECT_NEAR(farther.first - far.first, 2 * limit * far.second, 1e-9 * (1 + std::abs(far.first)));
-        }
+    constexpr double limit = ResponseFunction::limit;
+    for (const ResponseFunction& response : denim_table().responses) {
+        const auto inside = response.slopes(limit), outside = response.slopes(limit * (1 + 1e-12));
+        EXPECT_NEAR(outside.first, inside.first, 1e-9 * (1 + std::abs(inside.first)));
+        EXPECT_NEAR(response.value(limit * (1 + 1e-12)), response.value(limit), 1e-12);
+        EXPECT_EQ(outside.second, std::max(inside.second, 0.0));
+        const auto far = response.slopes(3 * limit), farther = response.slopes(5 * limit);
+        EXPECT_EQ(far.second, farther.second);
+        EXPECT_NEAR(farther.first - far.first, 2 * limit * far.second, 1e-9 * (1 + std::abs(far.first)));
+        EXPECT_NEAR(response.value(5 * limit) - response.value(3 * limit), limit * (far.first + farther.first), 1e-12);
+    }
 }
 
 TEST(OrthotropicMaterial, StressAndTangentAreTheEnergysDerivatives) {

@@ -98,11 +98,12 @@ struct SplineGrid {
                     stencil.dvv(k, p) = second(1, 1);
                 }
             }
-        std::vector<SurfaceBasis::FaceData> faces;
+        SurfaceBasis basis(vertex_count(), weights);
+        const int kind = basis.add_kind(stencil);
         for (int j = 0; j < ny; ++j)
             for (int i = 0; i < nx; ++i)
-                faces.push_back({control_points(i, j), 0});
-        return {vertex_count(), faces, {stencil}, weights};
+                basis.add_element(kind, control_points(i, j));
+        return basis;
     }
 };
 

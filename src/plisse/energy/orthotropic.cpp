@@ -17,7 +17,7 @@ ResponseFunction::ResponseFunction(double first_alpha, std::vector<Term> others)
 double ResponseFunction::value(double u) const {
     if (terms_.empty())
         return u;
-    const double inner = std::clamp(u, -limit, limit);
+    const double inner = std::min(u, limit);
     const double log = std::log1p(inner);
     double sum = 0;
     for (const Term& term : terms_)
@@ -32,7 +32,7 @@ double ResponseFunction::value(double u) const {
 ResponseFunction::Slopes ResponseFunction::slopes(double u) const {
     if (terms_.empty())
         return {1, 0};
-    const double inner = std::clamp(u, -limit, limit);
+    const double inner = std::min(u, limit);
     Slopes slopes = inner_slopes(inner);
     if (inner == u)
         return slopes;

@@ -7,9 +7,10 @@
 
 namespace plisse {
 
-/// phi(u) = sum_i mu_i/alpha_i [(1 + u)^alpha_i - 1] (RMTR equation 3.4), with sum_i mu_i = 1, so that phi'(0) = 1.
-/// Beyond |u| = `limit`, a strain of a quarter, where fitted exponents mean nothing, it goes on as a parabola with the
-/// slope and the second derivative that it has there, the latter at least 0: an energy stays bounded from below.
+/// phi(u) = sum_i mu_i/alpha_i [(1 + u)^alpha_i - 1] (RMTR equation 3.4), with sum_i mu_i = 1, so that phi'(0) = 1; of
+/// squares u >= 0. Beyond u = `limit`, a strain of a quarter, where fitted exponents mean nothing, it goes on as a
+/// parabola with the slope and the second derivative that it has there, the latter at least 0, so that energies stay
+/// bounded from below. phi(u) = u takes any u.
 class ResponseFunction {
 public:
     static constexpr double limit = 0.0625;
