@@ -1,0 +1,294 @@
+#include <plisse/solve/rmtr.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace plisse {
+
+RmtrLevelWork& RmtrLevelWork::operator+=(const RmtrLevelWork& other) {
+    visits += other.visits;
+    accepted += other.accepted;
+    rejected += other.rejected;
+    corrections_accepted += other.corrections_accepted;
+    corrections_rejected += other.corrections_rejected;
+    assemblies += other.assemblies;
+    quadratic_solves += other.quadratic_solves;
+    quadratic_iterations += other.quadratic_iterations;
+    evaluations += other.evaluations;
+    largest_correction = std::max(largest_correction, other.largest_correction);
+    return *this;
+}
+
+namespace {
+
+double work_units(const std::vector<RmtrLevelWork>& levels, int RmtrLevelWork::*count) {
+    double units = 0;
+    for (const RmtrLevelWork& level : levels)
+        units = units / 4 + level.*count;
+    return units;
+}
+
+/// The method on a hierarchy. Levels count from the coarsest, 0, to finest().
+class Rmtr {
+public:
+    Rmtr(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers,
+         const RmtrOptions& options, Context& context)
+        : transfers_(transfers), options_(options), context_(context), work_(levels.size()),
+          remembered_(levels.size(), std::numeric_limits<double>::infinity()), norm_bound_(levels.size(), 1.0) {
+        for (const LevelTransfer* transfer : transfers)
+            prolongations_.push_back(&transfer->prolongation());
+        for (std::size_t l = 0; l < levels.size(); ++l) {
+            solvers_.push_back(make_quadratic_solver(quadratic_options(l), std::span(prolongations_).first(l)));
+            iterates_.push_back(std::make_unique<TrustRegionIterate>(*levels[l], *solvers_.back(), options.constants));
+        }
+        for (std::size_t l = finest(); l-- > 0;)
+            norm_bound_[l] = norm_bound_[l + 1] * norm_bound(*prolongations_[l]);
+    }
+
+    /// Cycles until a test ends them. `total` gains the work.
+    RmtrSummary run(VecX& x, const std::function<void(const RmtrCycle&)>& observe) {
+        TrustRegionIterate& top = *iterates_[finest()];
+        StopTest stop(options_.stop);
+        double radius = options_.radius;
+        RmtrSummary summary;
+        summary.levels.resize(iterates_.size());
+        const auto ended = [&](TrustRegionEnd end) {
+            summary.end = end;
+            summary.value = top.value();
+            summary.gradient_norm = top.gradient_norm();
+            summary.radius = radius;
+            summary.message = fmt::format("{} after {} cycles, with |g| = {:.3g} and radius {:.3g}", in_words(end),
+                                          summary.cycles, summary.gradient_norm, radius);
+            return summary;
+        };
+        top.start(x);
+        if (!std::isfinite(top.value()))
+            return ended(TrustRegionEnd::infeasible);
+        for (;;) {
+            if (top.gradient_norm() < options_.stop.gradient)
+                return ended(TrustRegionEnd::gradient);
+            if (context_.cancelled())
+                return ended(TrustRegionEnd::interrupted);
+            if (summary.cycles >= options_.stop.max_iterations)
+                return ended(TrustRegionEnd::iteration_cap);
+            const double value = top.value(), radius_before = radius;
+            moved_ = hampered_ = false;
+            radius = visit(finest(), radius, std::numeric_limits<double>::infinity());
+            ++summary.cycles;
+            const double length = (top.x() - x).norm(), change = value - top.value();
+            x = top.x();
+            report(summary, radius, observe);
+            TrustRegionEnd end{};
+            const bool in_noise = std::abs(change) < top.noise(value) && !hampered_;
+            if (moved_ && stop.changed(change, length, radius_before, in_noise, end))
+                return ended(end);
+            if (!moved_ && radius < least_radius * std::max(1.0, x.norm()))
+                return ended(TrustRegionEnd::stalled);
+        }
+    }
+
+private:
+    static constexpr double least_radius = 1e-16;
+
+    std::size_t finest() const { return iterates_.size() - 1; }
+
+    const QuadraticOptions& quadratic_options(std::size_t level) const {
+        if (level == 0)
+            return options_.coarsest;
+        return level == transfers_.size() ? options_.finest : options_.smoother;
+    }
+
+    /// A level's iterate has begun: smooths, corrects and smooths it, and returns the last radius; 0 where the level
+    /// had to be left.
+    double visit(std::size_t level, double radius, double radius_above) {
+        ++work_[level].visits;
+        radius = smooth(level, radius, radius_above, options_.pre_steps);
+        if (level > 0) {
+            if (radius > 0 && !context_.cancelled())
+                radius = correct(level, radius, radius_above);
+            if (iterates_[level]->gradient_norm() > options_.stop.gradient)
+                radius = smooth(level, radius, radius_above, options_.post_steps);
+        }
+        return radius;
+    }
+
+    double smooth(std::size_t level, double radius, double radius_above, int steps) {
+        TrustRegionIterate& iterate = *iterates_[level];
+        for (int step = 0, tries = 0; step < steps && radius > 0; ++step) {
+            if (iterate.gradient_norm() < options_.stop.gradient || context_.cancelled())
+                break;
+            TrialStep trial = iterate.step(radius / norm_bound_[level]);
+            trial.norm *= norm_bound_[level];
+            work_[level].quadratic_iterations += trial.quadratic_iterations;
+            ++(trial.accepted ? work_[level].accepted : work_[level].rejected);
+            if (level == finest())
+                hampered_ = hampered_ || !trial.accepted || trial.on_boundary || trial.cut;
+            if (trial.accepted)
+                on_moved(level);
+            radius = bounded(level, next_radius(options_.constants, radius, trial), radius_above);
+            if (!trial.accepted && tries++ < options_.retries)
+                --step;
+            else
+                tries = 0;
+        }
+        return radius;
+    }
+
+    /// Algorithm 4.3: what the level may still move without leaving the radius above.
+    double bounded(std::size_t level, double radius, double radius_above) const {
+        if (level == finest())
+            return radius;
+        const TrustRegionIterate& iterate = *iterates_[level];
+        const double moved = norm_on_finest(level, iterate.x() - iterate.start_point());
+        return moved > (1 - options_.epsilon) * radius_above ? 0 : std::min(radius, radius_above - moved);
+    }
+
+    double norm_on_finest(std::size_t level, VecX v) const {
+        for (std::size_t l = level; l < finest(); ++l)
+            v = prolonged(*prolongations_[l], v);
+        return v.norm();
+    }
+
+    /// The coarse-level correction of an iterate, accepted by the multilevel ratio (4.11).
+    double correct(std::size_t level, double radius, double radius_above) {
+        TrustRegionIterate &fine = *iterates_[level], &coarse = *iterates_[level - 1];
+        const ScalarTransfer& s = *prolongations_[level - 1];
+        coarse.start(transfers_[level - 1]->project(fine.x()), restricted(s, fine.gradient()));
+        if (!std::isfinite(coarse.value()))
+            return radius;
+        double& remembered = remembered_[level - 1];
+        const double first =
+            options_.remember_radii ? std::min(radius, options_.constants.gamma2 * remembered) : radius;
+        const double last = visit(level - 1, first, radius);
+        if (last > 0)
+            remembered = last;
+        const VecX way = coarse.x() - coarse.start_point();
+        if (way.isZero(0))
+            return radius;
+        const TrialStep trial = try_correction(fine, coarse, way, prolonged(s, way));
+        if (trial.accepted)
+            on_moved(level);
+        RmtrLevelWork& work = work_[level];
+        ++(trial.accepted ? work.corrections_accepted : work.corrections_rejected);
+        TrialStep on_finest = trial;
+        on_finest.norm = norm_on_finest(level - 1, way);
+        work.largest_correction = std::max(work.largest_correction, on_finest.norm / radius);
+        if (level == finest())
+            hampered_ = hampered_ || !trial.accepted || trial.cut;
+        return bounded(level, next_radius(options_.constants, radius, on_finest), radius_above);
+    }
+
+    static TrialStep try_correction(TrustRegionIterate& fine, TrustRegionIterate& coarse, const VecX& way, VecX step) {
+        const NewtonSystem& system = fine.objective().system();
+        step = system.scatter(system.gather(step)); // prescribed unknowns stay
+        TrialStep trial;
+        const double alpha = fine.objective().max_step(fine.x(), step);
+        trial.cut = alpha < 1;
+        const double reached = trial.cut ? coarse.value_at(coarse.start_point() + alpha * way) : coarse.value();
+        trial.predicted = coarse.start_value() - reached;
+        VecX end = fine.x() + alpha * step;
+        const double value = fine.value_at(end);
+        trial.length = alpha * step.norm();
+        trial.actual = fine.value() - value;
+        const double noise = std::max(fine.noise(fine.value()), coarse.noise(coarse.start_value()));
+        trial.ratio = alpha > 0 ? agreement(trial.actual, trial.predicted, noise) : 0;
+        trial.accepted = trial.ratio > fine.constants().eta1;
+        if (trial.accepted)
+            fine.move_to(std::move(end), value);
+        return trial;
+    }
+
+    void on_moved(std::size_t level) {
+        if (level != finest())
+            return;
+        moved_ = true;
+        iterates_[level]->objective().on_accepted(iterates_[level]->x());
+    }
+
+    /// Books the work of a cycle and tells of it.
+    void report(RmtrSummary& summary, double radius, const std::function<void(const RmtrCycle&)>& observe) {
+        for (std::size_t l = 0; l <= finest(); ++l) {
+            work_[l].assemblies = iterates_[l]->assemblies() - summary.levels[l].assemblies;
+            work_[l].quadratic_solves = iterates_[l]->quadratic_solves() - summary.levels[l].quadratic_solves;
+            work_[l].evaluations = iterates_[l]->evaluations() - summary.levels[l].evaluations;
+            summary.levels[l] += work_[l];
+        }
+        const TrustRegionIterate& top = *iterates_[finest()];
+        RmtrCycle cycle{
+            summary.cycles, static_cast<int>(finest()), top.value(), top.gradient_norm(), radius, work_, 0, 0};
+        cycle.assembly_units = work_units(work_, &RmtrLevelWork::assemblies);
+        cycle.quadratic_units = work_units(work_, &RmtrLevelWork::quadratic_solves);
+        summary.assembly_units += cycle.assembly_units;
+        summary.quadratic_units += cycle.quadratic_units;
+        work_.assign(work_.size(), {});
+        if (observe)
+            observe(cycle);
+    }
+
+    std::span<const LevelTransfer* const> transfers_;
+    const RmtrOptions& options_;
+    Context& context_;
+    std::vector<const ScalarTransfer*> prolongations_;
+    std::vector<std::unique_ptr<QuadraticSolver>> solvers_;
+    std::vector<std::unique_ptr<TrustRegionIterate>> iterates_;
+    std::vector<RmtrLevelWork> work_; ///< of the cycle
+    std::vector<double> remembered_;  ///< the radius each level was left with
+    std::vector<double> norm_bound_;  ///< |v|_l <= norm_bound_[l] |v|
+    bool moved_ = false;              ///< the finest iterate, in this cycle
+    bool hampered_ = false;           ///< a step of the finest iterate was rejected, or met a bound, in this cycle
+};
+
+/// Nested iteration: the coarsest point is improved, its change prolonged and improved on the next level, up to the
+/// finest, where what comes of it replaces x if it is better and can be reached.
+void improve_start(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers, VecX& x,
+                   const RmtrOptions& options, Context& context, const std::function<void(const RmtrCycle&)>& observe,
+                   RmtrSummary& summary) {
+    RmtrOptions nested = options;
+    nested.stop.max_iterations = options.nested_cycles;
+    std::vector<VecX> starts{x};
+    for (std::size_t l = transfers.size(); l-- > 0;)
+        starts.push_back(transfers[l]->project(starts.back()));
+    std::reverse(starts.begin(), starts.end());
+    VecX change = VecX::Zero(starts.front().size());
+    for (std::size_t l = 0; l < transfers.size() && !context.cancelled(); ++l) {
+        VecX y = starts[l] + levels[l]->max_step(starts[l], change) * change;
+        if (!(levels[l]->value(y) <= levels[l]->value(starts[l])))
+            y = starts[l];
+        const RmtrSummary part = Rmtr(levels.first(l + 1), transfers.first(l), nested, context).run(y, observe);
+        summary.nested_cycles += part.cycles;
+        for (std::size_t k = 0; k <= l; ++k)
+            summary.levels[k] += part.levels[k];
+        change = prolonged(transfers[l]->prolongation(), y - starts[l]);
+    }
+    const VecX end = x + levels.back()->max_step(x, change) * change;
+    if (levels.back()->value(end) < levels.back()->value(x)) {
+        x = end;
+        levels.back()->on_accepted(x);
+    }
+}
+
+} // namespace
+
+RmtrSummary minimize_by_rmtr(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers,
+                             VecX& x, const RmtrOptions& options, Context& context,
+                             const std::function<void(const RmtrCycle&)>& observe) {
+    assert(levels.size() == transfers.size() + 1);
+    RmtrSummary before;
+    before.levels.resize(levels.size());
+    if (options.nested_cycles > 0)
+        improve_start(levels, transfers, x, options, context, observe, before);
+    RmtrSummary summary = Rmtr(levels, transfers, options, context).run(x, observe);
+    summary.nested_cycles = before.nested_cycles;
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        summary.levels[l] += before.levels[l];
+    summary.assembly_units = work_units(summary.levels, &RmtrLevelWork::assemblies);
+    summary.quadratic_units = work_units(summary.levels, &RmtrLevelWork::quadratic_solves);
+    return summary;
+}
+
+} // namespace plisse

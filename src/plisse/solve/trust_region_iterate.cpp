@@ -1,0 +1,107 @@
+#include <plisse/solve/trust_region_iterate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace plisse {
+
+double agreement(double actual, double predicted, double noise) {
+    if (std::abs(actual) < noise && std::abs(predicted) < noise)
+        return 1;
+    return predicted > 0 && std::isfinite(actual) ? actual / predicted : -std::numeric_limits<double>::infinity();
+}
+
+double next_radius(const TrustRegionConstants& constants, double radius, const TrialStep& trial) {
+    if (trial.ratio <= constants.eta1)
+        return constants.gamma1 * std::min(radius, trial.norm);
+    return trial.ratio > constants.eta2 ? constants.gamma2 * radius : radius;
+}
+
+void TrustRegionIterate::start(VecX x0) {
+    tilt_.resize(0);
+    begin(std::move(x0));
+    update_gradient();
+}
+
+void TrustRegionIterate::start(VecX x0, const VecX& gradient) {
+    start(std::move(x0));
+    tilt_ = free_part(gradient) - gradient_;
+    gradient_ += tilt_;
+}
+
+void TrustRegionIterate::begin(VecX x0) {
+    x0_ = x_ = std::move(x0);
+    value_ = start_value_ = value_at(x_);
+    matrix_is_current_ = false;
+}
+
+double TrustRegionIterate::value_at(const VecX& x) {
+    ++evaluations_;
+    double value = objective_.value(x);
+    if (tilt_.size() > 0)
+        value += tilt_.dot(x - x0_);
+    return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
+double TrustRegionIterate::noise(double value) const {
+    return std::max(constants_.noise * std::max(1e-3, std::abs(value)), objective_.round_off());
+}
+
+VecX TrustRegionIterate::free_part(const VecX& vertices) const {
+    const NewtonSystem& system = objective_.system();
+    return system.scatter(system.gather(vertices));
+}
+
+void TrustRegionIterate::update_gradient() {
+    VecX gradient;
+    objective_.gradient(x_, gradient);
+    gradient_ = free_part(gradient);
+    if (tilt_.size() > 0)
+        gradient_ += tilt_;
+}
+
+TrialStep TrustRegionIterate::step(double radius) {
+    NewtonSystem& system = objective_.system();
+    if (!std::exchange(matrix_is_current_, true)) {
+        objective_.assemble(x_, system, false);
+        solver_.set_matrix(system);
+        ++assemblies_;
+    }
+    const QuadraticStep model = solver_.minimize(system.gather(gradient_), radius);
+    ++quadratic_solves_;
+    TrialStep trial;
+    trial.radius = radius;
+    trial.norm = model.norm;
+    trial.on_boundary = model.on_boundary;
+    trial.quadratic_iterations = model.iterations;
+    const VecX step = system.scatter(model.s);
+    if (!step.allFinite()) {
+        trial.ratio = -std::numeric_limits<double>::infinity();
+        trial.length = std::numeric_limits<double>::infinity();
+        return trial;
+    }
+    const double alpha = objective_.max_step(x_, step);
+    trial.cut = alpha < 1;
+    VecX end = x_ + alpha * step;
+    const double value = value_at(end);
+    trial.length = alpha * step.norm();
+    trial.actual = value_ - value;
+    trial.predicted = model.decrease(alpha);
+    trial.ratio = alpha > 0 ? agreement(trial.actual, trial.predicted, noise(value_)) : 0;
+    trial.in_noise = std::abs(trial.actual) < noise(value_) && std::abs(trial.predicted) < noise(value_);
+    trial.accepted = trial.ratio > constants_.eta1;
+    if (trial.accepted)
+        move_to(std::move(end), value);
+    return trial;
+}
+
+void TrustRegionIterate::move_to(VecX x, double value) {
+    x_ = std::move(x);
+    value_ = value;
+    matrix_is_current_ = false;
+    update_gradient();
+}
+
+} // namespace plisse
