@@ -8,7 +8,7 @@ namespace plisse {
 /// where they leave the radius, and follow a direction of negative curvature to it.
 ///
 /// In the preconditioner's norm iterates grow steadily, so the end is well placed. In the Euclidean norm they are cut
-/// where they first leave the ball, and the Cauchy point is taken where that is better.
+/// where they first leave the ball, and what is best in the plane of that step and the gradient is taken.
 class ConjugateGradientStep : public QuadraticSolver {
 public:
     /// preconditioner: null for none.
@@ -17,10 +17,7 @@ public:
     QuadraticStep minimize(const VecX& gradient, double radius) override;
 
 private:
-    QuadraticStep iterate(const VecX& gradient, double radius) const;
-    VecX preconditioned(const VecX& residual) const {
-        return preconditioner_ ? preconditioner_->apply(residual) : residual;
-    }
+    QuadraticStep iterate(const VecX& gradient, double radius, const Preconditioner* preconditioner) const;
 
     QuadraticOptions options_;
     std::unique_ptr<Preconditioner> preconditioner_;

@@ -89,7 +89,7 @@ TrialStep TrustRegionIterate::step(double radius) {
     trial.length = alpha * step.norm();
     trial.actual = value_ - value;
     trial.predicted = model.decrease(alpha);
-    trial.ratio = alpha > 0 ? agreement(trial.actual, trial.predicted, noise(value_)) : 0;
+    trial.ratio = trial.length > 0 ? agreement(trial.actual, trial.predicted, noise(value_)) : 0;
     trial.in_noise = std::abs(trial.actual) < noise(value_) && std::abs(trial.predicted) < noise(value_);
     trial.accepted = trial.ratio > constants_.eta1;
     if (trial.accepted)

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include <plisse/base/parallel.h>
+#include <plisse/solve/rmtr.h>
+
+#include "solve/spline_net.h"
+
+using namespace plisse;
+
+namespace {
+
+NetLaw buckling() {
+    NetLaw law;
+    law.approach = 0.1;
+    return law;
+}
+
+double reference_value(NetHierarchy& hierarchy, double arch) {
+    VecX x = hierarchy.finest().start(arch);
+    Context context;
+    const TrustRegionSummary summary = minimize_by_trust_region(hierarchy.finest(), x, {}, context);
+    EXPECT_TRUE(summary.converged()) << summary.message;
+    std::printf("TR: %s; f = %.12g\n", summary.message.c_str(), summary.value);
+    return summary.value;
+}
+
+QuadraticOptions smoothing(Preconditioning preconditioning) {
+    QuadraticOptions options = smoothing_by_block_jacobi();
+    options.preconditioning = preconditioning;
+    return options;
+}
+
+TEST(Rmtr, CoarseModelsAgreeToFirstOrder) {
+    NetHierarchy hierarchy(4, 2, buckling());
+    QuadraticOptions options;
+    const auto fine_solver = make_quadratic_solver(options), coarse_solver = make_quadratic_solver(options);
+    const TrustRegionConstants constants;
+    TrustRegionIterate fine(*hierarchy.levels[1], *fine_solver, constants);
+    TrustRegionIterate coarse(*hierarchy.levels[0], *coarse_solver, constants);
+    fine.start(hierarchy.finest().start(0.1) + 0.01 * random_vector(363, 1));
+    const VecX restricted_gradient = restricted(*hierarchy.prolongations[0], fine.gradient());
+    coarse.start(hierarchy.between[0]->project(fine.x()), restricted_gradient);
+    EXPECT_LT((coarse.gradient() - restricted_gradient).norm(), 1e-12 * restricted_gradient.norm());
+    // And the gradient is that of the tilted value.
+    const VecX d = random_vector(147, 2), x0 = coarse.x();
+    const double h = 1e-5;
+    EXPECT_NEAR((coarse.value_at(x0 + h * d) - coarse.value_at(x0 - h * d)) / (2 * h), restricted_gradient.dot(d),
+                1e-6 * restricted_gradient.norm());
+    coarse.move_to(x0 + 0.01 * d, coarse.value_at(x0 + 0.01 * d));
+    const VecX gradient = coarse.gradient(), x1 = coarse.x();
+    EXPECT_NEAR((coarse.value_at(x1 + h * d) - coarse.value_at(x1 - h * d)) / (2 * h), gradient.dot(d),
+                1e-6 * gradient.norm());
+}
+
+TEST(Rmtr, FindsTheMinimumOfASaggingNetInFewCyclesOnAnyNumberOfLevels) {
+    std::vector<int> cycles;
+    for (int count : {2, 3, 4}) {
+        NetHierarchy hierarchy(2, count, NetLaw{});
+        const double expected = reference_value(hierarchy, 0);
+        VecX x = hierarchy.finest().start(0);
+        double last = hierarchy.finest().value(x);
+        Context context;
+        const RmtrSummary summary =
+            minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, {}, context, [&](const RmtrCycle& cycle) {
+                EXPECT_LE(cycle.value, last + 1e-13 * std::max(1e-3, std::abs(last)));
+                last = cycle.value;
+                for (const RmtrLevelWork& level : cycle.levels)
+                    EXPECT_LE(level.largest_correction, 1 + 1e-9);
+            });
+        std::printf("%d levels: %s; f = %.12g\n", count, summary.message.c_str(), summary.value);
+        EXPECT_TRUE(summary.converged()) << summary.message;
+        EXPECT_NEAR(summary.value, expected, 1e-8 * std::abs(expected));
+        EXPECT_EQ(summary.value, hierarchy.finest().value(x));
+        cycles.push_back(summary.cycles);
+    }
+    EXPECT_LE(cycles.back(), 12);
+    EXPECT_LE(cycles.back(), cycles.front() + 2);
+}
+
+TEST(Rmtr, FindsTheMinimumOfABucklingNetWithEverySmoother) {
+    NetHierarchy hierarchy(4, 3, buckling());
+    const double expected = reference_value(hierarchy, -0.1);
+    for (const Preconditioning smoother :
+         {Preconditioning::block_jacobi, Preconditioning::block_gauss_seidel, Preconditioning::multigrid})
+        for (int nested : {0, 10}) {
+            VecX x = hierarchy.finest().start(-0.1);
+            RmtrOptions options;
+            options.finest = smoothing(smoother);
+            if (smoother != Preconditioning::multigrid)
+                options.smoother = smoothing(smoother);
+            options.nested_cycles = nested;
+            Context context;
+            const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+            std::printf("smoother %d, nested %d: %s; f = %.12g; units %.3g %.3g\n", static_cast<int>(smoother), nested,
+                        summary.message.c_str(), summary.value, summary.assembly_units, summary.quadratic_units);
+            EXPECT_TRUE(summary.converged()) << summary.message;
+            EXPECT_NEAR(summary.value, expected, 1e-8 * std::abs(expected));
+            EXPECT_EQ(summary.nested_cycles > 0, nested > 0);
+        }
+}
+
+TEST(Rmtr, EndsAtAMinimumFromAnUnstableStart) {
+    NetLaw law;
+    law.approach = 0.25;
+    for (const Preconditioning smoother : {Preconditioning::block_jacobi, Preconditioning::multigrid}) {
+        NetHierarchy hierarchy(4, 3, law);
+        VecX x = hierarchy.finest().start(-1e-3), y = x;
+        TrustRegionOptions single;
+        single.stop.gradient = 1e-6;
+        RmtrOptions options;
+        options.stop.gradient = 1e-6;
+        options.finest = smoothing(smoother);
+        Context context;
+        const TrustRegionSummary other = minimize_by_trust_region(hierarchy.finest(), y, single, context);
+        const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+        std::printf("%s; f = %.12g, TR %s; %.12g\n", summary.message.c_str(), summary.value, other.message.c_str(),
+                    other.value);
+        EXPECT_TRUE(summary.converged()) << summary.message;
+        QuadraticOptions exact;
+        const auto solver = make_quadratic_solver(exact);
+        hierarchy.finest().assemble(x, hierarchy.finest().system(), false);
+        solver->set_matrix(hierarchy.finest().system());
+        VecX gradient;
+        hierarchy.finest().gradient(x, gradient);
+        EXPECT_EQ(solver->minimize(gradient, 1).iterations, 1); // the Hessian is definite
+    }
+}
+
+TEST(Rmtr, CountsWorkInUnitsOfTheFinestLevel) {
+    NetHierarchy hierarchy(2, 3, NetLaw{});
+    VecX x = hierarchy.finest().start(0);
+    RmtrOptions options;
+    options.retries = 0;
+    Context context;
+    double quadratic_units = 0;
+    int full_cycles = 0;
+    const RmtrSummary summary =
+        minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context, [&](const RmtrCycle& cycle) {
+            quadratic_units += cycle.quadratic_units;
+            double expected = 0;
+            for (std::size_t l = 0; l < cycle.levels.size(); ++l)
+                expected += std::pow(0.25, 2 - static_cast<int>(l)) * cycle.levels[l].quadratic_solves;
+            EXPECT_DOUBLE_EQ(cycle.quadratic_units, expected);
+            full_cycles += std::abs(cycle.quadratic_units - 2.5625) < 1e-12; // 2 + 2/4 + 1/16
+        });
+    EXPECT_NEAR(summary.quadratic_units, quadratic_units, 1e-9);
+    EXPECT_LE(summary.assembly_units, summary.quadratic_units);
+    EXPECT_GE(full_cycles, summary.cycles - 3);
+    EXPECT_GE(summary.cycles, 4);
+}
+
+TEST(Rmtr, IsTheTrustRegionMethodOnOneLevel) {
+    NetHierarchy hierarchy(4, 1, buckling());
+    VecX x = hierarchy.finest().start(-0.1), y = x;
+    RmtrOptions options;
+    options.retries = 0;
+    TrustRegionOptions single;
+    single.quadratic = options.coarsest;
+    Context context;
+    const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, {}, x, options, context);
+    const TrustRegionSummary other = minimize_by_trust_region(hierarchy.finest(), y, single, context);
+    EXPECT_TRUE(summary.converged());
+    EXPECT_EQ(summary.cycles, other.iterations);
+    EXPECT_EQ(x, y);
+}
+
+TEST(Rmtr, EndsHonestly) {
+    NetHierarchy hierarchy(2, 3, buckling());
+    RmtrOptions options;
+    options.stop.max_iterations = 2;
+    Context context;
+    VecX x = hierarchy.finest().start(-0.1);
+    const RmtrSummary capped = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+    EXPECT_EQ(capped.end, TrustRegionEnd::iteration_cap);
+    EXPECT_EQ(capped.cycles, 2);
+    EXPECT_FALSE(capped.converged());
+
+    context.cancel();
+    const VecX before = x;
+    const RmtrSummary cancelled = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+    EXPECT_EQ(cancelled.end, TrustRegionEnd::interrupted);
+    EXPECT_EQ(x, before);
+}
+
+TEST(Rmtr, IsInterruptedWithinACycleWithAPointThatIsNoWorse) {
+    NetHierarchy hierarchy(2, 3, buckling());
+    Context context;
+    VecX x = hierarchy.finest().start(-0.1);
+    const double before = hierarchy.finest().value(x);
+    const RmtrSummary summary =
+        minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, {}, context, [&](const RmtrCycle& cycle) {
+            if (cycle.cycle == 2)
+                context.cancel();
+        });
+    EXPECT_EQ(summary.end, TrustRegionEnd::interrupted);
+    EXPECT_EQ(summary.cycles, 2);
+    EXPECT_LT(hierarchy.finest().value(x), before);
+}
+
+TEST(Rmtr, KeepsToTheLargestSafeStepOnEveryLevel) {
+    NetHierarchy hierarchy(2, 3, buckling());
+    const double expected = reference_value(hierarchy, -0.1);
+    for (const auto& net : hierarchy.nets)
+        net->largest_move = 0.01;
+    VecX x = hierarchy.finest().start(-0.1);
+    Context context;
+    const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, {}, context);
+    EXPECT_TRUE(summary.converged()) << summary.message;
+    EXPECT_NEAR(summary.value, expected, 1e-8 * std::abs(expected));
+}
+
+TEST(Rmtr, GivesTheSameBitsForAnyThreadCount) {
+    std::vector<VecX> results;
+    for (int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        NetHierarchy hierarchy(4, 3, buckling());
+        VecX x = hierarchy.finest().start(-0.1);
+        RmtrOptions options;
+        options.finest = smoothing(Preconditioning::multigrid);
+        options.stop.max_iterations = 3;
+        Context context;
+        minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+        results.push_back(x);
+    }
+    EXPECT_EQ(results[0], results[1]);
+}
+
+} // namespace
