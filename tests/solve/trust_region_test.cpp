@@ -14,6 +14,12 @@ using namespace plisse;
 
 namespace {
 
+VecX at(double x, double y, double z) {
+    VecX point(3);
+    point << x, y, z;
+    return point;
+}
+
 /// 100 (y - x^2)^2 + (1 - x)^2 + (z - y)^4 of one vertex: curved valley, indefinite between its walls.
 class Valley : public Objective {
 public:
@@ -80,7 +86,7 @@ TEST(SplineNet, HasTheDerivativesOfItsValue) {
 TEST(TrustRegion, FollowsACurvedValley) {
     for (const QuadraticOptions& method : methods()) {
         Valley valley;
-        VecX x = Vec3(-1.2, 1, 2);
+        VecX x = at(-1.2, 1, 2);
         TrustRegionOptions options;
         options.quadratic = method;
         options.stop.gradient = 1e-11;
@@ -107,7 +113,7 @@ TEST(TrustRegion, FollowsACurvedValley) {
 TEST(TrustRegion, TakesAnInfiniteValueForARejection) {
     Valley valley;
     valley.wall = 0.5;
-    VecX x = Vec3(-1.2, 1, 2);
+    VecX x = at(-1.2, 1, 2);
     TrustRegionOptions options;
     options.radius = 100;
     Context context;
@@ -115,14 +121,14 @@ TEST(TrustRegion, TakesAnInfiniteValueForARejection) {
     EXPECT_FALSE(summary.converged()) << summary.message; // the infimum lies on the wall
     EXPECT_LE(x[0], 0.5);
     EXPECT_NEAR(x[0], 0.5, 1e-3);
-    x = Vec3(0.6, 0, 0);
+    x = at(0.6, 0, 0);
     EXPECT_EQ(minimize_by_trust_region(valley, x, options, context).end, TrustRegionEnd::infeasible);
 }
 
 TEST(TrustRegion, KeepsToTheLargestSafeStep) {
     Valley valley;
     valley.longest = 0.05;
-    VecX x = Vec3(-1.2, 1, 1);
+    VecX x = at(-1.2, 1, 1);
     Context context;
     const TrustRegionSummary summary =
         minimize_by_trust_region(valley, x, {}, context, [&](const TrustRegionIteration& iteration) {
@@ -132,7 +138,7 @@ TEST(TrustRegion, KeepsToTheLargestSafeStep) {
     EXPECT_GE(summary.iterations, 40); // the way is over two units long
     EXPECT_LT((x - Vec3(1, 1, 1)).norm(), 1e-3);
     valley.longest = 0; // nothing may move: no convergence to tell of
-    x = Vec3(-1.2, 1, 1);
+    x = at(-1.2, 1, 1);
     EXPECT_FALSE(minimize_by_trust_region(valley, x, {}, context).converged());
 }
 
@@ -141,25 +147,25 @@ TEST(TrustRegion, EndsHonestly) {
     Context context;
     TrustRegionOptions options;
     options.stop.max_iterations = 3;
-    VecX x = Vec3(-1.2, 1, 2);
+    VecX x = at(-1.2, 1, 2);
     EXPECT_EQ(minimize_by_trust_region(valley, x, options, context).end, TrustRegionEnd::iteration_cap);
 
     options = {};
     options.stop.gradient = 0; // never
     valley.offset = 1e3;       // hides the last digits
-    x = Vec3(-1.2, 1, 1);
+    x = at(-1.2, 1, 1);
     TrustRegionSummary summary = minimize_by_trust_region(valley, x, options, context);
     EXPECT_EQ(summary.end, TrustRegionEnd::rounding) << summary.message;
     EXPECT_LT((x - Vec3(1, 1, 1)).norm(), 2e-3);
 
     options.stop.noisy_steps = 0;
-    x = Vec3(-1.2, 1, 1);
+    x = at(-1.2, 1, 1);
     summary = minimize_by_trust_region(valley, x, options, context);
     EXPECT_EQ(summary.end, TrustRegionEnd::small_change) << summary.message;
     EXPECT_GT(summary.radius, 1e15);
 
     context.cancel();
-    x = Vec3(-1.2, 1, 2);
+    x = at(-1.2, 1, 2);
     summary = minimize_by_trust_region(valley, x, options, context);
     EXPECT_EQ(summary.end, TrustRegionEnd::interrupted);
     EXPECT_EQ(summary.iterations, 0);
@@ -183,7 +189,6 @@ TEST(TrustRegion, MinimizesABucklingNetByEveryMethod) {
             minimize_by_trust_region(hierarchy.finest(), x, options, context, {}, hierarchy.prolongations);
         EXPECT_TRUE(summary.converged()) << summary.message;
         EXPECT_LE(summary.iterations, 60);
-        std::printf("%s; f = %.12g\n", summary.message.c_str(), summary.value);
         EXPECT_NEAR(summary.value, values.empty() ? summary.value : values.front(), 1e-8 * std::abs(summary.value));
         values.push_back(summary.value);
     }

@@ -77,7 +77,7 @@ public:
             if (summary.cycles >= options_.stop.max_iterations)
                 return ended(TrustRegionEnd::iteration_cap);
             const double value = top.value(), radius_before = radius;
-            moved_ = hampered_ = false;
+            moved_ = hampered_ = cut_ = false;
             radius = visit(finest(), radius, std::numeric_limits<double>::infinity());
             ++summary.cycles;
             const double length = (top.x() - x).norm(), change = value - top.value();
@@ -85,7 +85,7 @@ public:
             report(summary, radius, observe);
             TrustRegionEnd end{};
             const bool in_noise = std::abs(change) < top.noise(value) && !hampered_;
-            if (moved_ && stop.changed(change, length, radius_before, in_noise, end))
+            if (moved_ && !cut_ && stop.changed(change, length, radius_before, in_noise, end))
                 return ended(end);
             if (!moved_ && radius < least_radius * std::max(1.0, x.norm()))
                 return ended(TrustRegionEnd::stalled);
@@ -126,10 +126,7 @@ private:
             trial.norm *= norm_bound_[level];
             work_[level].quadratic_iterations += trial.quadratic_iterations;
             ++(trial.accepted ? work_[level].accepted : work_[level].rejected);
-            if (level == finest())
-                hampered_ = hampered_ || !trial.accepted || trial.on_boundary || trial.cut;
-            if (trial.accepted)
-                on_moved(level);
+            on_tried(level, trial);
             radius = bounded(level, next_radius(options_.constants, radius, trial), radius_above);
             if (!trial.accepted && tries++ < options_.retries)
                 --step;
@@ -171,15 +168,12 @@ private:
         if (way.isZero(0))
             return radius;
         const TrialStep trial = try_correction(fine, coarse, way, prolonged(s, way));
-        if (trial.accepted)
-            on_moved(level);
+        on_tried(level, trial);
         RmtrLevelWork& work = work_[level];
         ++(trial.accepted ? work.corrections_accepted : work.corrections_rejected);
         TrialStep on_finest = trial;
         on_finest.norm = norm_on_finest(level - 1, way);
         work.largest_correction = std::max(work.largest_correction, on_finest.norm / radius);
-        if (level == finest())
-            hampered_ = hampered_ || !trial.accepted || trial.cut;
         return bounded(level, next_radius(options_.constants, radius, on_finest), radius_above);
     }
 
@@ -203,8 +197,12 @@ private:
         return trial;
     }
 
-    void on_moved(std::size_t level) {
+    void on_tried(std::size_t level, const TrialStep& trial) {
         if (level != finest())
+            return;
+        hampered_ = hampered_ || !trial.accepted || trial.on_boundary || trial.cut;
+        cut_ = cut_ || trial.cut;
+        if (!trial.accepted)
             return;
         moved_ = true;
         iterates_[level]->objective().on_accepted(iterates_[level]->x());
@@ -240,6 +238,7 @@ private:
     std::vector<double> remembered_;  ///< the radius each level was left with
     std::vector<double> norm_bound_;  ///< |v|_l <= norm_bound_[l] |v|
     bool moved_ = false;              ///< the finest iterate, in this cycle
+    bool cut_ = false;                ///< max_step cut a step of it, in this cycle
     bool hampered_ = false;           ///< a step of the finest iterate was rejected, or met a bound, in this cycle
 };
 
