@@ -3,16 +3,19 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <variant>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <plisse/base/error.h>
 #include <plisse/base/parallel.h>
+#include <plisse/drive/multiscale.h>
 #include <plisse/drive/run.h>
 #include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/mesh/write_ply.h>
 #include <plisse/scene/build_model.h>
+#include <plisse/scene/build_subdivision_model.h>
 #include <plisse/scene/hierarchy_cache.h>
 #include <plisse/scene/overrides.h>
 #include <plisse/scene/read_scene.h>
@@ -44,15 +47,36 @@ RunFolderOptions folder_options(const RunArguments& arguments, int threads) {
     return {existing, !arguments.no_frames, PLISSE_VERSION, threads};
 }
 
+/// A scene made ready to run by its method.
+using ReadyModel = std::variant<Model, SubdivisionModel>;
+
+ReadyModel make_ready(const Scene& scene, Context& context) {
+    if (scene.solve.method == Method::rmtr)
+        return build_subdivision_model(scene, context);
+    return build_model(scene, context);
+}
+
+const std::vector<MeshAttribute>& attributes_of(const ReadyModel& ready) {
+    if (const Model* model = std::get_if<Model>(&ready))
+        return model->mesh.attributes;
+    return std::get<SubdivisionModel>(ready).surface.attributes;
+}
+
+RunResult run_ready(const ReadyModel& ready, const RunOptions& options, Recorder& recorder, Context& context) {
+    if (const Model* model = std::get_if<Model>(&ready))
+        return run(*model, options, recorder, context);
+    return run_multiscale(std::get<SubdivisionModel>(ready), options, recorder, context);
+}
+
 /// Runs into the folder. When that throws, the folder says so, or vanishes when nothing could be begun.
-RunResult run_into(RunFolder& folder, const Model& model, const RunArguments& arguments, Context& context) {
+RunResult run_into(RunFolder& folder, const ReadyModel& ready, const RunArguments& arguments, Context& context) {
     std::optional<HierarchyCache> cache;
     if (const auto caches = HierarchyCache::default_folder(); caches && !arguments.no_cache)
         cache.emplace(*caches, context);
     const RunOptions options{arguments.until.value_or(-1), folder.checkpoint() ? &*folder.checkpoint() : nullptr,
                              cache ? &*cache : nullptr};
     try {
-        RunResult result = run(model, options, folder, context);
+        RunResult result = run_ready(ready, options, folder, context);
         if (result.positions.cols() > 0)
             folder.write_final(result.level, result.positions);
         folder.on_report(result.report);
@@ -100,12 +124,12 @@ void run_scene(const RunArguments& arguments) {
     const ProgressStyle style = progress_style(arguments.progress, arguments.quiet);
     Console console(style);
     const InterruptGuard guard(console);
-    const Model model = build_model(scene, console);
-    RunFolder folder(arguments.folder, scene, model, folder_options(arguments, limit.threads()));
+    const ReadyModel ready = make_ready(scene, console);
+    RunFolder folder(arguments.folder, scene, attributes_of(ready), folder_options(arguments, limit.threads()));
     if (arguments.resume && !folder.checkpoint())
         console.on_message(fmt::format("{} has no checkpoint: the run begins at its beginning", arguments.folder));
 
-    const RunResult result = run_into(folder, model, arguments, console);
+    const RunResult result = run_into(folder, ready, arguments, console);
     console.clear_bar();
     print_end(arguments, {result.report, {PLISSE_VERSION, limit.threads(), peak_memory_bytes()}}, style);
     if (const ExitCode code = exit_code(result.report); code != ExitCode::done)

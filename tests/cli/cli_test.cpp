@@ -113,7 +113,7 @@ TEST_F(Cli, ARefusedSceneLeavesNothingBehind) {
     expect_unusable({"run", at("bad.json"), "-o", at("out")}, "bad.json:2:11: at /bodys: unknown key");
     write("good.json", hung_sheet(few_steps));
     expect_unusable({"run", at("good.json"), "-o", at("out"), "--level", "9"}, "--level 9");
-    expect_unusable({"run", at("good.json"), "-o", at("out"), "--method", "rmtr"}, "not supported in this version");
+    expect_unusable({"run", at("good.json"), "-o", at("out"), "--method", "rmtr"}, "takes a mesh of quads");
     EXPECT_FALSE(fs::exists(at("out")));
 }
 

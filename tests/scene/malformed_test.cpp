@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <plisse/scene/build_model.h>
+#include <plisse/scene/build_subdivision_model.h>
 #include <plisse/scene/read_scene.h>
 
 namespace plisse {
@@ -18,7 +19,10 @@ void load(const std::string& file) {
     const Scene scene =
         is_scene ? read_scene(folder / file)
                  : parse_scene("scene.json", R"({"plisse": 1, "bodies": [{"mesh": ")" + file + R"("}]})", folder);
-    build_model(scene, context);
+    if (scene.solve.method == Method::rmtr)
+        build_subdivision_model(scene, context);
+    else
+        build_model(scene, context);
 }
 
 TEST(Malformed, EveryFileIsRefusedWithItsNameAndPlace) {

@@ -210,7 +210,7 @@ protected:
     }
 
     RunFolder open(Existing existing, bool frames = true) {
-        RunFolder folder(output(), scene_, model_, {existing, frames, "0.1.0", 2});
+        RunFolder folder(output(), scene_, model_.mesh.attributes, {existing, frames, "0.1.0", 2});
         folder.on_hierarchy(hierarchy_);
         return folder;
     }

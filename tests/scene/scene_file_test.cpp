@@ -147,13 +147,9 @@ TEST(SceneFile, FeaturesOfLaterVersionsSaySo) {
         return R"({"plisse": 1, "bodies": [{"name": "a", "mesh": "a.obj")" + body + "}]" + rest + "}";
     };
     const std::vector<std::string> later = {
-        with(R"(, "solve": {"method": "rmtr"})"),
         with(R"(, "obstacles": [{"mesh": "b.obj", "motion": {"frames": "f/*.obj", "dt": 0.04}}])"),
-        with("", R"(, "material": "denim-stable")"),
-        with("", R"(, "material": "denim-table")"),
         with("", R"(, "pressure": {"gas": 100})"),
         with("", R"(, "pressure": {"volume": 1.2})"),
-        R"({"plisse": 1, "bodies": [{"mesh": {"generate": "sheet", "pattern": "quad"}}]})",
     };
     for (const std::string& text : later)
         EXPECT_NE(message_of(text).find("is not supported in this version; "), std::string::npos) << text << "\n"
@@ -222,7 +218,10 @@ TEST(Overrides, ReplaceMethodAndLevel) {
     EXPECT_FALSE(s.solve.level.has_value());
     EXPECT_THROW(override_solve(s, std::nullopt, 1), InputError);
     EXPECT_THROW(override_solve(s, "direct", 4), InputError);
-    EXPECT_THROW(override_solve(s, "rmtr", std::nullopt), InputError);
+    override_solve(s, "rmtr", std::nullopt);
+    EXPECT_EQ(s.solve.method, Method::rmtr);
+    EXPECT_THROW(override_solve(s, "rmtr", 1), InputError);
+    EXPECT_THROW(override_solve(s, "multigrid", std::nullopt), InputError);
 }
 
 } // namespace

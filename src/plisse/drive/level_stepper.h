@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <plisse/drive/run_log.h>
+#include <plisse/model/shell_problem.h>
 #include <plisse/solve/newton.h>
 
 namespace plisse {

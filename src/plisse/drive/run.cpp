@@ -77,7 +77,8 @@ Driver::Driver(const Model& model, const RunOptions& options, Recorder& recorder
     : model_(model), recorder_(recorder), context_(context), resume_(options.resume),
       duration_(options.until >= 0 ? std::min(options.until, model.solve.duration) : model.solve.duration),
       discretization_(model, levels_needed(model), context, options.hierarchies),
-      log_(discretization_, recorder, context, starting_report(model, options)),
+      log_(discretization_.hierarchy(), static_cast<int>(model.bodies.size()), governing_scales(model), recorder,
+           context, starting_report(model, options)),
       first_level_(is_direct(model) ? model.solve.level.value_or(discretization_.finest()) : 0),
       last_level_(is_direct(model) ? first_level_ : discretization_.finest()) {
     if (first_level_ > discretization_.finest())

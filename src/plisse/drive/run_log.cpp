@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include <plisse/model/fold_estimate.h>
 #include <plisse/spatial/intersections.h>
 
 namespace plisse {
 
-RunLog::RunLog(const Discretization& discretization, Recorder& recorder, Context& context, RunReport report)
-    : discretization_(discretization), recorder_(recorder), context_(context), report_(std::move(report)),
-      frame_numbers_(static_cast<std::size_t>(discretization.finest()) + 1, 0), earlier_seconds_(report_.wall_seconds) {
-}
+RunLog::RunLog(const Hierarchy& levels, int body_count, std::vector<FoldScale> scales, Recorder& recorder,
+               Context& context, RunReport report)
+    : hierarchy_(levels), body_count_(body_count), scales_(std::move(scales)), recorder_(recorder), context_(context),
+      report_(std::move(report)), frame_numbers_(levels.levels.size(), 0), earlier_seconds_(report_.wall_seconds) {}
 
 LevelReport& RunLog::level_report(int level) {
     auto& levels = report_.levels;
@@ -19,22 +18,21 @@ LevelReport& RunLog::level_report(int level) {
         return *found;
     LevelReport fresh;
     fresh.level = level;
-    fresh.vertices = static_cast<int>(discretization_.mesh(level).rest.cols());
-    fresh.faces = static_cast<int>(discretization_.mesh(level).faces.size());
-    fresh.estimated_turn = estimate_level(discretization_.mesh(level), governing_scales(discretization_.model())).turn;
+    fresh.vertices = static_cast<int>(mesh(level).rest.cols());
+    fresh.faces = static_cast<int>(mesh(level).faces.size());
+    fresh.estimated_turn = estimate_level(mesh(level), scales_).turn;
     levels.push_back(fresh);
     return levels.back();
 }
 
 void RunLog::frame(int level, double t, const std::string& phase, const Positions& x) {
-    const Model& model = discretization_.model();
-    const std::vector<int>& part = discretization_.layout(level).face_part;
-    const auto both_obstacles = [&](int a, int b) {
-        return model.is_obstacle(part[static_cast<std::size_t>(a)]) &&
-               model.is_obstacle(part[static_cast<std::size_t>(b)]);
+    const HierarchyLevel& shown = mesh(level);
+    const auto of_obstacle = [&](int f) {
+        const int corner = shown.faces[static_cast<std::size_t>(f)][0];
+        return shown.part[static_cast<std::size_t>(corner)] >= body_count_;
     };
-    report_.intersecting_pairs +=
-        static_cast<int>(intersecting_pairs(x, discretization_.mesh(level).faces, both_obstacles).size());
+    const auto both_obstacles = [&](int a, int b) { return of_obstacle(a) && of_obstacle(b); };
+    report_.intersecting_pairs += static_cast<int>(intersecting_pairs(x, shown.faces, both_obstacles).size());
     recorder_.on_frame({level, frame_numbers_[static_cast<std::size_t>(level)]++, t, phase, &x});
 }
 

@@ -2,7 +2,7 @@
 
 #include <plisse/base/context.h>
 #include <plisse/drive/recorder.h>
-#include <plisse/model/shell_problem.h>
+#include <plisse/model/fold_estimate.h>
 
 namespace plisse {
 
@@ -10,7 +10,10 @@ namespace plisse {
 /// place so that drivers only say what happened.
 class RunLog {
 public:
-    RunLog(const Discretization& discretization, Recorder& recorder, Context& context, RunReport report);
+    /// levels: what frames show; must outlive the log. Parts from body_count on are obstacles. scales: governing_scales
+    /// of the bodies, for the estimate of each level.
+    RunLog(const Hierarchy& levels, int body_count, std::vector<FoldScale> scales, Recorder& recorder, Context& context,
+           RunReport report);
 
     Context& context() { return context_; }
     RunReport& report() { return report_; }
@@ -31,7 +34,11 @@ public:
     double seconds() const { return earlier_seconds_ + watch_.seconds(); }
 
 private:
-    const Discretization& discretization_;
+    const HierarchyLevel& mesh(int level) const { return hierarchy_.levels[static_cast<std::size_t>(level)]; }
+
+    const Hierarchy& hierarchy_;
+    int body_count_;
+    std::vector<FoldScale> scales_;
     Recorder& recorder_;
     Context& context_;
     RunReport report_;

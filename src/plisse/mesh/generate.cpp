@@ -88,6 +88,8 @@ double checked_area(const GeneratorOptions& o) {
 }
 
 void check_options(const GeneratorOptions& options) {
+    require(options.pattern != Pattern::quad, "the sheet is one of quads, and this takes triangles",
+            "give the pattern \"regular\" or \"irregular\", or the method rmtr");
     require_positive("edge_length", options.edge_length);
     const double area = checked_area(options);
     const auto& [nx, nz] = options.cells;

@@ -7,7 +7,7 @@
 namespace plisse {
 
 enum class GeneratorShape { sheet, box, sphere, cylinder, dome, torus, annulus, pumpkin, star };
-enum class Pattern { irregular, regular };
+enum class Pattern { irregular, regular, quad };
 enum class Diagonals { alternating, one };
 
 /// The generators of scene files: every shape centred at the origin, metres, +y up. Only the fields of the shape at
@@ -28,7 +28,7 @@ struct GeneratorOptions {
     double edge_length = 0.05;        ///< > 0
     Pattern pattern = Pattern::irregular;
     Diagonals diagonals = Diagonals::alternating; ///< regular sheets
-    std::array<int, 2> cells{0, 0};               ///< regular sheets: nx, nz; 0 takes them from edge_length
+    std::array<int, 2> cells{0, 0};               ///< sheets: nx, nz, not irregular; 0 takes them from edge_length
     std::uint64_t seed = 1;
 };
 

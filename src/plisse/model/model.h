@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <plisse/mesh/triangle_mesh.h>
+#include <plisse/model/rmtr_settings.h>
 #include <plisse/model/track.h>
 #include <plisse/transfer/prolongation_operator.h>
 
@@ -16,7 +17,14 @@ enum class BendingModel {
     koiter ///< KoiterBending: converges to plate and shell theory
 };
 
-/// An isotropic shell material.
+/// How a material answers strain.
+enum class MaterialLaw {
+    isotropic,   ///< by Young's modulus and Poisson's ratio
+    denim_table, ///< orthotropic woven cloth as printed (RMTR table 1), for the method rmtr
+    denim_stable ///< the same with a coupling of warp and weft that keeps its energy from falling below 0
+};
+
+/// A shell material.
 struct Material {
     double density = 472.6;       ///< kg/m^3 of solid, > 0
     double youngs_modulus = 8e5;  ///< Pa, > 0
@@ -26,6 +34,7 @@ struct Material {
     /// Largest principal stretch, > 1; empty: none.
     std::optional<double> strain_limit = std::nullopt;
     BendingModel bending = BendingModel::hinge;
+    MaterialLaw law = MaterialLaw::isotropic; ///< the others know no Young's modulus and no Poisson's ratio
 };
 
 /// Half-open range of vertices or faces of the model's mesh.
@@ -89,7 +98,7 @@ enum class HierarchySource {
 enum class BendingOn { finest, level };
 enum class Curvature { automatic, own, galerkin };
 enum class GradientKind { exact, lagged };
-enum class Method { progressive, direct };
+enum class Method { progressive, direct, rmtr };
 
 struct HierarchySettings {
     int levels = 3;                                                  ///< meshes, >= 1
@@ -114,6 +123,7 @@ struct SolveSettings {
     Curvature curvature = Curvature::automatic;
     GradientKind gradient = GradientKind::exact;
     bool dynamics = false;
+    RmtrSettings rmtr;
 };
 
 /// Everything a run needs: all bodies, then all obstacles, in one mesh, with loads, scripts and settings.

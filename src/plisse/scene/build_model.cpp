@@ -55,6 +55,9 @@ private:
     }
 
     void add_body(const BodySpec& spec, const std::string& pointer) {
+        if (spec.material.law != MaterialLaw::isotropic)
+            throw scene_.error_at(pointer + "/material", "this is an orthotropic cloth for the method rmtr",
+                                  "give another material, such as \"denim\", or the method rmtr");
         TriangleMesh mesh = load_mesh(scene_, spec.mesh, spec.transform, pointer + "/mesh", context_);
         expect_usable(scene_, mesh, spec.mesh, pointer + "/mesh", false);
         placed_.push_back(mesh);

@@ -1,6 +1,7 @@
 #include <plisse/scene/load_part.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -16,23 +17,36 @@ TriangleMesh generate(const Scene& scene, const GeneratorOptions& options, const
     try {
         return generate_mesh(options);
     } catch (const InputError& error) {
-        const std::string sentence = std::string(error.what()).substr(error.place().size() + 2);
-        const std::size_t end = std::min(sentence.find("; "), sentence.size());
-        throw scene.error_at(pointer, sentence.substr(0, end),
-                             end < sentence.size() ? sentence.substr(end + 2) : "change the generator's options");
+        throw scene.error_at(pointer, error);
     }
 }
 
-TriangleMesh read_file(const Scene& scene, const std::string& file, const std::string& pointer, Context& context) {
-    const std::filesystem::path path = scene.folder / file;
+std::filesystem::path existing_file(const Scene& scene, const std::string& file, const std::string& pointer) {
+    std::filesystem::path path = scene.folder / file;
     std::error_code error;
     if (!std::filesystem::exists(path, error))
         throw scene.error_at(pointer, fmt::format("there is no file {}", path.string()),
                              "give a path relative to the scene file");
+    return path;
+}
+
+TriangleMesh read_file(const Scene& scene, const std::string& file, const std::string& pointer, Context& context) {
+    const std::filesystem::path path = existing_file(scene, file, pointer);
     MeshFile read = read_mesh(path);
     for (const std::string& note : read.notes)
         context.on_message(fmt::format("{}: {}", path.string(), note));
     return std::move(read.mesh);
+}
+
+QuadMesh generate_quads(const Scene& scene, const GeneratorOptions& options, const std::string& pointer) {
+    if (options.pattern != Pattern::quad)
+        throw scene.error_at(pointer, "the method rmtr takes a mesh of quads",
+                             "give a sheet of the pattern \"quad\", or an OBJ file of quads");
+    std::array<int, 2> cells = options.cells;
+    for (int axis = 0; axis < 2; ++axis)
+        if (int& count = cells[static_cast<std::size_t>(axis)]; count == 0)
+            count = std::max(1, static_cast<int>(std::lround(options.size[axis] / options.edge_length)));
+    return quad_sheet({options.size.x(), options.size.y()}, cells);
 }
 
 void transform_positions(Positions& positions, const TransformSpec& transform) {
@@ -80,6 +94,14 @@ TriangleMesh load_mesh(const Scene& scene, const MeshSpec& spec, const Transform
                        const std::string& pointer, Context& context) {
     TriangleMesh mesh =
         spec.is_file() ? read_file(scene, spec.file, pointer, context) : generate(scene, spec.generator, pointer);
+    transform_positions(mesh.positions, transform);
+    return mesh;
+}
+
+QuadMesh load_quad_mesh(const Scene& scene, const MeshSpec& spec, const TransformSpec& transform,
+                        const std::string& pointer) {
+    QuadMesh mesh = spec.is_file() ? read_quad_mesh(existing_file(scene, spec.file, pointer))
+                                   : generate_quads(scene, spec.generator, pointer);
     transform_positions(mesh.positions, transform);
     return mesh;
 }

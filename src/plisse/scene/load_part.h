@@ -1,6 +1,7 @@
 #pragma once
 
 #include <plisse/base/context.h>
+#include <plisse/mesh/quad_mesh.h>
 #include <plisse/scene/scene.h>
 
 namespace plisse {
@@ -9,6 +10,10 @@ namespace plisse {
 /// there is none.
 TriangleMesh load_mesh(const Scene& scene, const MeshSpec& spec, const TransformSpec& transform,
                        const std::string& pointer, Context& context);
+
+/// The same for the method rmtr: an OBJ file of quads, or a sheet of the pattern quad.
+QuadMesh load_quad_mesh(const Scene& scene, const MeshSpec& spec, const TransformSpec& transform,
+                        const std::string& pointer);
 
 /// Throws InputError with counts and the first places when a run could not use the mesh. allow_self_intersection: of an
 /// obstacle, whose faces never meet each other.

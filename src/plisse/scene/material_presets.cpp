@@ -5,6 +5,18 @@
 
 namespace plisse {
 
+namespace {
+
+Material denim(MaterialLaw law) {
+    Material material;
+    material.thickness = 6.6e-4;
+    material.density = 0.4 / material.thickness; // 0.4 kg/m^2
+    material.law = law;
+    return material;
+}
+
+} // namespace
+
 std::span<const MaterialPreset> material_presets() {
     // density kg/m^3, Young's modulus Pa, Poisson's ratio, thickness m, bending scale
     static const std::vector<MaterialPreset> presets = {
@@ -26,6 +38,10 @@ std::span<const MaterialPreset> material_presets() {
          "biaxially oriented PET film, typical of makers' data sheets (4.5 to 5 GPa); 50 micrometres"},
         {"aluminium", {2700, 7.0e10, 0.3, 1e-4, 1}, "EN 1999-1-1, 3.2.5; the wall of a drinks can, 0.1 mm"},
         {"steel", {7850, 2.1e11, 0.3, 5e-4, 1}, "EN 1993-1-1, 3.2.6; a sheet of 0.5 mm"},
+        {"denim-stable", denim(MaterialLaw::denim_stable),
+         "the next, with k2 a tenth of what is printed, so that no strain has an energy below that of rest"},
+        {"denim-table", denim(MaterialLaw::denim_table),
+         "Kopanicakova, Krause, Tamstorf 2019 (Subdivision-based nonlinear multiscale cloth simulation), table 1"},
         {"acrylic", {1190, 3.3e9, 0.37, 2e-3, 1}, "cast PMMA, typical of makers' data sheets; a sheet of 2 mm"},
     };
     return presets;

@@ -12,9 +12,7 @@ Method method_named(const std::string& name) {
     for (const auto& choice : choices_of(Method{}).choices)
         if (choice.name == name)
             return choice.value;
-    const bool later = name == "rmtr";
-    throw InputError("--method " + name, later ? "not supported in this version" : "there is no such method",
-                     "give progressive or direct");
+    throw InputError("--method " + name, "there is no such method", "give progressive, direct or rmtr");
 }
 
 } // namespace
@@ -22,7 +20,7 @@ Method method_named(const std::string& name) {
 void override_solve(Scene& scene, const std::optional<std::string>& method, const std::optional<int>& level) {
     if (method)
         scene.solve.method = method_named(*method);
-    if (scene.solve.method == Method::progressive)
+    if (scene.solve.method != Method::direct)
         scene.solve.level.reset();
     if (!level)
         return;

@@ -214,8 +214,6 @@ void ValueReader::read(const JsonCursor& at, Material& material, const Limits&) 
         return reader.finish();
     }
     const std::string& name = at.string();
-    if (name == "denim-stable" || name == "denim-table")
-        at.fail_later(fmt::format("the material \"{}\"", name), "take another material");
     if (const MaterialPreset* preset = find_material_preset(name)) {
         material = preset->material;
         return;

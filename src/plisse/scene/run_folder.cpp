@@ -33,8 +33,9 @@ std::string frame_file(int level, int number) {
 
 } // namespace
 
-RunFolder::RunFolder(fs::path folder, const Scene& scene, const Model& model, const RunFolderOptions& options)
-    : folder_(std::move(folder)), options_(options), attributes_(model.mesh.attributes),
+RunFolder::RunFolder(fs::path folder, const Scene& scene, std::vector<MeshAttribute> attributes,
+                     const RunFolderOptions& options)
+    : folder_(std::move(folder)), options_(options), attributes_(std::move(attributes)),
       checkpoints_(folder_ / "checkpoint") {
     // These properties of frames are our own; a mesh that was once a frame brings older ones.
     std::erase_if(attributes_, [](const MeshAttribute& attribute) {

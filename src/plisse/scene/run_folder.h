@@ -4,7 +4,7 @@
 #include <optional>
 
 #include <plisse/drive/recorder.h>
-#include <plisse/model/model.h>
+#include <plisse/mesh/triangle_mesh.h>
 #include <plisse/scene/checkpoint_folder.h>
 #include <plisse/scene/json_lines.h>
 #include <plisse/scene/report_json.h>
@@ -28,9 +28,10 @@ struct RunFolderOptions {
 /// at any moment leaves a folder that can be resumed.
 class RunFolder final : public Recorder {
 public:
-    /// Makes or opens the folder. Throws InputError when it exists and that is refused, or when what is to be resumed
-    /// is the run of another scene.
-    RunFolder(std::filesystem::path folder, const Scene& scene, const Model& model, const RunFolderOptions& options);
+    /// Makes or opens the folder. attributes: of the finest mesh, for frames. Throws InputError when it exists and that
+    /// is refused, or when what is to be resumed is the run of another scene.
+    RunFolder(std::filesystem::path folder, const Scene& scene, std::vector<MeshAttribute> attributes,
+              const RunFolderOptions& options);
 
     /// The checkpoint to go on from; nothing when the run begins at its beginning.
     const std::optional<Checkpoint>& checkpoint() const { return checkpoint_; }

@@ -44,6 +44,7 @@ struct BodySpec {
     Track<double> pressure{0.0};
     RestSpec rest;
     std::optional<MeshSpec> start;
+    Vec3 warp = Vec3::UnitX(); ///< direction of an orthotropic cloth's warp, after the transform
 };
 
 /// A key of a scripted motion; a field left out keeps its last value.
@@ -122,6 +123,8 @@ struct Scene {
     /// An error about the value that this JSON pointer names.
     InputError error_at(const std::string& pointer, const std::string& what_is_wrong,
                         const std::string& what_would_be_right) const;
+    /// The same from an error that knows of no scene (with an empty place).
+    InputError error_at(const std::string& pointer, const InputError& without_place) const;
 };
 
 } // namespace plisse

@@ -46,7 +46,8 @@ inline const Choices<GeneratorShape>& choices_of(GeneratorShape) {
     return all;
 }
 inline const Choices<Pattern>& choices_of(Pattern) {
-    static const Choices<Pattern> all{{{"irregular", Pattern::irregular}, {"regular", Pattern::regular}}, {"quad"}};
+    using P = Pattern;
+    static const Choices<Pattern> all{{{"irregular", P::irregular}, {"regular", P::regular}, {"quad", P::quad}}, {}};
     return all;
 }
 inline const Choices<Diagonals>& choices_of(Diagonals) {
@@ -55,6 +56,12 @@ inline const Choices<Diagonals>& choices_of(Diagonals) {
 }
 inline const Choices<BendingModel>& choices_of(BendingModel) {
     static const Choices<BendingModel> all{{{"hinge", BendingModel::hinge}, {"koiter", BendingModel::koiter}}, {}};
+    return all;
+}
+inline const Choices<MaterialLaw>& choices_of(MaterialLaw) {
+    using L = MaterialLaw;
+    static const Choices<MaterialLaw> all{
+        {{"isotropic", L::isotropic}, {"denim-stable", L::denim_stable}, {"denim-table", L::denim_table}}, {}};
     return all;
 }
 inline const Choices<ProlongationOperator>& choices_of(ProlongationOperator) {
@@ -85,8 +92,34 @@ inline const Choices<GradientKind>& choices_of(GradientKind) {
     static const Choices<GradientKind> all{{{"exact", GradientKind::exact}, {"lagged", GradientKind::lagged}}, {}};
     return all;
 }
+inline const Choices<SurfaceSolver>& choices_of(SurfaceSolver) {
+    using S = SurfaceSolver;
+    static const Choices<SurfaceSolver> all{{{"rmtr", S::rmtr},
+                                             {"trust-region", S::trust_region},
+                                             {"newton", S::newton},
+                                             {"damped-newton", S::damped_newton},
+                                             {"linearised", S::linearised}},
+                                            {}};
+    return all;
+}
+inline const Choices<SurfaceSmoother>& choices_of(SurfaceSmoother) {
+    using S = SurfaceSmoother;
+    static const Choices<SurfaceSmoother> all{{{"plain", S::plain},
+                                               {"block-jacobi", S::block_jacobi},
+                                               {"gauss-seidel", S::gauss_seidel},
+                                               {"multigrid", S::multigrid}},
+                                              {}};
+    return all;
+}
+inline const Choices<SurfaceProjection>& choices_of(SurfaceProjection) {
+    using P = SurfaceProjection;
+    static const Choices<SurfaceProjection> all{
+        {{"reverse-subdivision", P::reverse_subdivision}, {"least-squares", P::least_squares}}, {}};
+    return all;
+}
 inline const Choices<Method>& choices_of(Method) {
-    static const Choices<Method> all{{{"progressive", Method::progressive}, {"direct", Method::direct}}, {"rmtr"}};
+    using M = Method;
+    static const Choices<Method> all{{{"progressive", M::progressive}, {"direct", M::direct}, {"rmtr", M::rmtr}}, {}};
     return all;
 }
 
@@ -129,14 +162,15 @@ void describe_sizes(Visitor& v, GeneratorOptions& g) {
 
 template <typename Visitor>
 void describe_cells(Visitor& v, GeneratorOptions& g) {
-    const bool regular = g.pattern == Pattern::regular;
+    const bool in_rows = g.pattern != Pattern::irregular;
     std::optional<std::array<int, 2>> cells;
     if (g.cells[0] > 0)
         cells = g.cells;
-    v.field_if(regular, "cells", cells, Limits{1, 10000},
+    v.field_if(in_rows, "cells", cells, Limits{1, 10000},
                "cells along x and z of a regular sheet; null takes them from edge_length");
     g.cells = cells.value_or(std::array<int, 2>{0, 0});
-    v.field_if(regular, "diagonals", g.diagonals, Limits{}, "which way the cells of a regular sheet are cut");
+    v.field_if(g.pattern == Pattern::regular, "diagonals", g.diagonals, Limits{},
+               "which way the cells of a regular sheet are cut");
 }
 
 template <typename Visitor>
@@ -144,7 +178,12 @@ void describe(Visitor& v, GeneratorOptions& g) {
     v.required("generate", g.shape, "the shape, centred at the origin, +y up");
     describe_sizes(v, g);
     v.field("edge_length", g.edge_length, positive, "m, of the triangles");
-    v.field("pattern", g.pattern, "irregular: a Delaunay-type mesh of relaxed points; regular: rows and columns");
+    v.field(
+        "pattern", g.pattern,
+        "irregular: a Delaunay-type mesh of relaxed points; regular: rows and columns; quad: a sheet's cells uncut, "
+        "for the method rmtr");
+    v.check(g.pattern != Pattern::quad || g.shape == GeneratorShape::sheet, "pattern", "only a sheet is made of quads",
+            "give \"sheet\", or the quads of an OBJ file");
     v.field("seed", g.seed, "of the irregular pattern; the same seed gives the same mesh on every machine");
     if (g.shape == GeneratorShape::sheet)
         describe_cells(v, g);
@@ -168,6 +207,10 @@ void describe(Visitor& v, Material& m) {
     v.field(
         "bending_scale", m.bending_scale, not_negative,
         "factor of the bending energy: 1 is exact for a sheet rolled along mesh lines, 3 compares with public codes");
+    v.field(
+        "law", m.law,
+        "isotropic, or denim: orthotropic cloth for the method rmtr, where Young's modulus and Poisson's ratio mean "
+        "nothing");
     v.field("strain_limit", m.strain_limit, Limits{1.0001, 100},
             "largest principal stretch, such as 1.1, which no triangle of any level passes; null: none");
 }
@@ -185,6 +228,10 @@ void describe(Visitor& v, BodySpec& b) {
     v.field("rest", b.rest,
             "the shape free of stress: as-given, flat-angles (lengths as given, no rest curvature; where more than two "
             "faces meet angles as given), or {\"mesh\": ...} of the same connectivity");
+    v.field("warp", b.warp,
+            "by the method rmtr, the direction of an orthotropic cloth's warp where the body is at rest; on each face, "
+            "its part along the face");
+    v.check(b.warp.norm() > 0, "warp", "it has no direction", "give a vector that is not zero");
     v.field("start", b.start, "a mesh of the same connectivity to start from, when not the body's mesh");
 }
 
@@ -294,9 +341,28 @@ void describe(Visitor& v, HierarchySettings& h) {
 }
 
 template <typename Visitor>
+void describe(Visitor& v, RmtrSettings& r) {
+    v.field("solver", r.solver,
+            "what minimises a step: rmtr; on the finest level alone, to compare: trust-region, newton (line search), "
+            "damped-newton, linearised");
+    v.field("smoother", r.smoother, "on the levels of rmtr below the finest: preconditioner of conjugate gradients");
+    v.field("finest_smoother", r.finest_smoother, "the same on the finest level");
+    v.field("projection", r.projection, "how a fine state is taken to the next coarser level");
+    v.field("boundary_variables", r.boundary_variables,
+            "whether unknowns beyond the boundary are replaced by points of the boundary curve");
+    v.field("nested_iteration", r.nested_iteration, "whether coarser levels are solved first, for a start");
+    v.field("penalty", r.penalty, positive,
+            "N/m^3, of what holds a boundary; null: h^-5 in SI units, h being the finest level's mean side");
+    v.field("thickness_points", r.thickness_points, Limits{3, 5}, "Gauss points over the thickness: 3 or 5");
+    v.check(r.thickness_points != 4, "thickness_points", "there is no rule of 4 points", "give 3 or 5");
+    v.field("max_cycles", r.max_cycles, Limits{1, 1e6}, "cycles, or iterations, after which a step gives up");
+}
+
+template <typename Visitor>
 void describe(Visitor& v, SolveSettings& s) {
     v.field("method", s.method,
-            "progressive: previews the timeline on level 0, then refines; direct: steps it on one mesh");
+            "progressive: previews the timeline on level 0, then refines; direct: steps it on one mesh; rmtr: "
+            "subdivision shells by recursive multilevel trust region");
     v.field("level", s.level, Limits{0, 19}, "direct on this level's own mesh; null: the finest");
     v.check(!s.level || s.method == Method::direct, "level", "a level is only for the method direct",
             "set `method` to \"direct\", or leave `level` out");
@@ -315,6 +381,7 @@ void describe(Visitor& v, SolveSettings& s) {
             "previews' Hessian: the level's own, the finest pulled back, or chosen by the scene");
     v.field("gradient", s.gradient, "previews' gradient: exact, or lagged as in PSQ equation 10");
     v.field("dynamics", s.dynamics, "implicit Euler steps with inertia instead of quasistatic ones");
+    v.field_if(s.method == Method::rmtr, "rmtr", s.rmtr, Limits{}, "of the method rmtr");
 }
 
 template <typename Visitor>

@@ -211,22 +211,24 @@ Json mesh_schema() {
     return schema;
 }
 
+std::string values_of(const Material& m) {
+    const std::string sheet = fmt::format("density {} kg/m^3, thickness {} m", m.density, m.thickness);
+    return m.law == MaterialLaw::isotropic
+               ? fmt::format("{}, Young's modulus {} Pa, Poisson's ratio {}, bending scale {}", sheet, m.youngs_modulus,
+                             m.poisson_ratio, m.bending_scale)
+               : sheet + ", for the method rmtr";
+}
+
 Json preset_schema(const MaterialPreset& preset) {
-    const Material& m = preset.material;
     return {{"const", preset.name},
-            {"description",
-             fmt::format("density {} kg/m^3, Young's modulus {} Pa, Poisson's ratio {}, thickness {} m, "
-                         "bending scale {}. Source: {}",
-                         m.density, m.youngs_modulus, m.poisson_ratio, m.thickness, m.bending_scale, preset.source)},
-            {"examples", {ObjectWriter::write(m)}}};
+            {"description", fmt::format("{}. Source: {}", values_of(preset.material), preset.source)},
+            {"examples", {ObjectWriter::write(preset.material)}}};
 }
 
 Json material_schema() {
     Json schema;
     for (const MaterialPreset& preset : material_presets())
         schema["anyOf"].push_back(preset_schema(preset));
-    for (const char* name : {"denim-stable", "denim-table"})
-        schema["anyOf"].push_back({{"const", name}, {"description", std::string("of rmtr scenes") + later_note}});
     Material values;
     ObjectSchema object;
     describe(object, values);

@@ -1,0 +1,205 @@
+#include <plisse/drive/surface_stepper.h>
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <plisse/linalg/linear_solver.h>
+#include <plisse/solve/newton.h>
+#include <plisse/solve/trust_region.h>
+
+namespace plisse {
+
+namespace {
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+/// Corrections by S, points by least squares.
+class LeastSquaresTransfer final : public LevelTransfer {
+public:
+    LeastSquaresTransfer(ScalarTransfer prolongation, LeastSquaresProjection projection)
+        : prolongation_(std::move(prolongation)), projection_(std::move(projection)) {}
+    const ScalarTransfer& prolongation() const override { return prolongation_; }
+    VecX project(const VecX& fine) const override {
+        const Positions coarse = projection_.apply(as_positions(fine));
+        return as_vector(coarse);
+    }
+
+private:
+    ScalarTransfer prolongation_;
+    LeastSquaresProjection projection_;
+};
+
+std::unique_ptr<LevelTransfer> transfer_between(const SubdivisionModel& model, int level) {
+    const SubdivisionLevels& levels = model.levels;
+    if (model.solve.rmtr.projection == SurfaceProjection::least_squares)
+        return std::make_unique<LeastSquaresTransfer>(levels.subdivision(level),
+                                                      levels.least_squares_projection(level));
+    return std::make_unique<SparseTransfer>(levels.subdivision(level), levels.projection(level));
+}
+
+QuadraticOptions smoothing_by(SurfaceSmoother smoother) {
+    QuadraticOptions options;
+    options.method = QuadraticMethod::conjugate_gradients;
+    switch (smoother) {
+    case SurfaceSmoother::plain:
+        options.preconditioning = Preconditioning::none;
+        break;
+    case SurfaceSmoother::block_jacobi:
+        options.preconditioning = Preconditioning::block_jacobi;
+        break;
+    case SurfaceSmoother::gauss_seidel:
+        options.preconditioning = Preconditioning::block_gauss_seidel;
+        break;
+    case SurfaceSmoother::multigrid:
+        options.preconditioning = Preconditioning::multigrid;
+        break;
+    }
+    return options;
+}
+
+TrustRegionEnd end_of(NewtonEnd end) {
+    switch (end) {
+    case NewtonEnd::converged:
+        return TrustRegionEnd::small_change;
+    case NewtonEnd::iteration_cap:
+        return TrustRegionEnd::iteration_cap;
+    case NewtonEnd::cancelled:
+        return TrustRegionEnd::interrupted;
+    case NewtonEnd::stalled:
+    case NewtonEnd::blocked:
+        break;
+    }
+    return TrustRegionEnd::stalled;
+}
+
+double gradient_norm(Objective& objective, const VecX& x) {
+    VecX gradient;
+    objective.gradient(x, gradient);
+    return gradient.norm();
+}
+
+} // namespace
+
+SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
+    : model_(model), settings_(model.solve.rmtr), context_(context) {
+    std::vector<HeldPlaces> held = held_places(model);
+    const double penalty = boundary_penalty(model);
+    const int finest = model.levels.level_count() - 1;
+    // Solvers of the finest level alone need no others.
+    const int first = settings_.solver == SurfaceSolver::rmtr ? 0 : finest;
+    for (int l = first; l <= finest; ++l)
+        problems_.push_back(std::make_unique<SubdivisionProblem>(model, l, std::move(held[at(l)]), penalty, context));
+    for (int l = first; l < finest; ++l)
+        transfers_.push_back(transfer_between(model, l));
+}
+
+void SurfaceStepper::begin_step(const SurfaceStep& step) {
+    std::vector<Positions> inertial(problems_.size());
+    inertial.back() = step.inertial;
+    for (std::size_t l = problems_.size() - 1; step.time_step > 0 && l > 0; --l)
+        inertial[l - 1] = as_positions(transfers_[l - 1]->project(as_vector(inertial[l])));
+    for (std::size_t l = 0; l < problems_.size(); ++l)
+        problems_[l]->begin_step(step, std::move(inertial[l]));
+}
+
+SurfaceOutcome SurfaceStepper::solve(const SurfaceStep& step, VecX& x,
+                                     const std::function<void(const SurfaceIteration&)>& observe) {
+    constexpr double damping = 0.3; // the paper's
+    begin_step(step);
+    switch (settings_.solver) {
+    case SurfaceSolver::trust_region:
+        return by_trust_region(x, observe);
+    case SurfaceSolver::newton:
+        return by_line_search(x, observe);
+    case SurfaceSolver::damped_newton:
+        return by_fixed_steps(x, damping, settings_.max_cycles, observe);
+    case SurfaceSolver::linearised:
+        return by_fixed_steps(x, 1, 1, observe);
+    case SurfaceSolver::rmtr:
+        break;
+    }
+    return by_rmtr(x, observe);
+}
+
+SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+    RmtrOptions options;
+    options.stop.max_iterations = settings_.max_cycles;
+    options.smoother = smoothing_by(settings_.smoother);
+    options.finest = smoothing_by(settings_.finest_smoother);
+    options.nested_cycles = settings_.nested_iteration ? settings_.max_cycles : 0;
+    std::vector<Objective*> levels;
+    for (const auto& problem : problems_)
+        levels.push_back(problem.get());
+    std::vector<const LevelTransfer*> transfers;
+    for (const auto& transfer : transfers_)
+        transfers.push_back(transfer.get());
+    const RmtrSummary summary = minimize_by_rmtr(levels, transfers, x, options, context_, [&](const RmtrCycle& cycle) {
+        if (observe)
+            observe({cycle.cycle, cycle.finest_level, cycle.value, cycle.gradient_norm, cycle.radius});
+    });
+    return {summary.end,    summary.message,        summary.cycles,         summary.gradient_norm,
+            summary.levels, summary.assembly_units, summary.quadratic_units};
+}
+
+SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+    TrustRegionOptions options;
+    options.stop.max_iterations = settings_.max_cycles;
+    options.quadratic.method = QuadraticMethod::dogleg;
+    const int finest = model_.levels.level_count() - 1;
+    const TrustRegionSummary summary =
+        minimize_by_trust_region(this->finest(), x, options, context_, [&](const TrustRegionIteration& iteration) {
+            if (observe)
+                observe(
+                    {iteration.iteration, finest, iteration.value, iteration.gradient_norm, iteration.trial.radius});
+        });
+    return {summary.end, summary.message, summary.iterations, summary.gradient_norm, {}};
+}
+
+SurfaceOutcome SurfaceStepper::by_line_search(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+    NewtonOptions options;
+    options.tolerance = 1e-9; // m
+    options.max_iterations = settings_.max_cycles;
+    LinearSolver solver;
+    const int level = model_.levels.level_count() - 1;
+    const NewtonSummary summary =
+        minimize(finest(), solver, x, options, context_, [&](const NewtonIteration& iteration) {
+            if (observe)
+                observe({iteration.iteration, level, iteration.value, iteration.step_norm, iteration.step_length});
+        });
+    return {end_of(summary.end), summary.message, summary.iterations, gradient_norm(finest(), x), {}};
+}
+
+SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most,
+                                              const std::function<void(const SurfaceIteration&)>& observe) {
+    const TrustRegionStop stop;
+    LinearSolver solver;
+    SurfaceOutcome outcome;
+    VecX gradient;
+    finest().gradient(x, gradient);
+    for (outcome.gradient_norm = gradient.norm(); !(outcome.gradient_norm < stop.gradient);
+         outcome.gradient_norm = gradient.norm()) {
+        const bool is_finite = std::isfinite(outcome.gradient_norm);
+        if (!is_finite || outcome.iterations == most || context_.cancelled()) {
+            outcome.end = !is_finite             ? TrustRegionEnd::stalled
+                          : context_.cancelled() ? TrustRegionEnd::interrupted
+                                                 : TrustRegionEnd::iteration_cap;
+            break;
+        }
+        NewtonSystem& system = finest().system();
+        finest().assemble(x, system, false);
+        solver.factorize(system);
+        x += factor * system.scatter(solver.solve(system, -system.gather(gradient)));
+        ++outcome.iterations;
+        finest().gradient(x, gradient);
+        if (observe)
+            observe({outcome.iterations, model_.levels.level_count() - 1, finest().value(x), gradient.norm(), factor});
+    }
+    outcome.message = fmt::format("{} after {} steps, with |g| = {:.3g}", in_words(outcome.end), outcome.iterations,
+                                  outcome.gradient_norm);
+    return outcome;
+}
+
+} // namespace plisse

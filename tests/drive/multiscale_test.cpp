@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <plisse/base/parallel.h>
+#include <plisse/drive/multiscale.h>
+#include <plisse/drive/surface_stepper.h>
+
+#include "../model/cloth_models.h"
+#include "witness.h"
+
+namespace plisse {
+namespace {
+
+RunResult run_cloth(const SubdivisionModel& model, const RunOptions& options = {}) {
+    Context context;
+    Recorder recorder;
+    return run_multiscale(model, options, recorder, context);
+}
+
+double energy_of(const SubdivisionModel& model, SurfaceOutcome* outcome = nullptr) {
+    Context context;
+    SurfaceStepper stepper(model, context);
+    SurfaceStep step;
+    step.t = step.time_step = 1;
+    step.inertial = model.levels.rest(model.levels.level_count() - 1);
+    VecX x = as_vector(step.inertial);
+    const SurfaceOutcome end = stepper.solve(step, x);
+    EXPECT_TRUE(is_converged(end.end)) << end.message;
+    if (outcome)
+        *outcome = end;
+    return stepper.finest().value(x);
+}
+
+/// Where the middle of the sheet ends.
+double height_of_middle(const SubdivisionModel& model, const Positions& surface) {
+    Eigen::Index middle = 0;
+    model.surface.positions.colwise().squaredNorm().minCoeff(&middle);
+    return surface(1, middle);
+}
+
+/// Acceptance 8 of the specification.
+TEST(Multiscale, TrampolinesSagAsTheirSpecificationSays) {
+    const std::array table{-0.05641, -0.03021, -0.02735};
+    for (int levels = 1; levels <= 3; ++levels) {
+        SubdivisionModel model = square_metre(levels, MaterialLaw::denim_table, anywhere);
+        model.solve.rmtr.solver = SurfaceSolver::trust_region;
+        const RunResult result = run_cloth(model);
+        EXPECT_NEAR(height_of_middle(model, result.positions), table[static_cast<std::size_t>(levels - 1)], 1e-5);
+        EXPECT_TRUE(result.report.levels.front().equilibrium);
+        EXPECT_LE(result.report.levels.front().newton_iterations, 25);
+        if (levels == 3)
+            EXPECT_NEAR(energy_of(model), -0.0390126, 1e-7);
+    }
+    const SubdivisionModel stable = square_metre(3, MaterialLaw::denim_stable, anywhere);
+    EXPECT_NEAR(height_of_middle(stable, run_cloth(stable).positions), -0.029235, 1e-5);
+}
+
+/// Acceptance 9, in part: by a direct solver.
+TEST(Multiscale, DroopingSheetsHaveTheEnergyOfTheirSpecification) {
+    const std::array energies{-0.48347, -0.46276};
+    for (int levels = 1; levels <= 2; ++levels) {
+        SubdivisionModel model = square_metre(levels, MaterialLaw::denim_stable, on_two_sides);
+        model.solve.rmtr.solver = SurfaceSolver::trust_region;
+        EXPECT_NEAR(energy_of(model), energies[static_cast<std::size_t>(levels - 1)], 1e-4);
+    }
+}
+
+TEST(Multiscale, AllLevelsTogetherFindTheMinimumOfTheFinestAlone) {
+    for (int levels = 2; levels <= 3; ++levels) {
+        SubdivisionModel model = square_metre(levels, MaterialLaw::denim_table, anywhere);
+        SurfaceOutcome cycles;
+        const double by_levels = energy_of(model, &cycles);
+        EXPECT_LE(cycles.iterations, 15);
+        model.solve.rmtr.solver = SurfaceSolver::trust_region;
+        EXPECT_NEAR(by_levels, energy_of(model), 1e-8);
+    }
+}
+
+TEST(Multiscale, HandlesCarryTheWeight) {
+    SubdivisionModel model = square_metre(3, MaterialLaw::denim_stable, anywhere);
+    model.solve.dynamics = false;
+    const RunResult result = run_cloth(model);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    ASSERT_EQ(result.report.reactions.size(), 1u);
+    EXPECT_LT((result.report.reactions[0].force - Vec3(0, 0.4 * 9.81, 0)).norm(), 1e-6);
+    EXPECT_LT(result.report.levels.front().residual, 1e-6);
+}
+
+TEST(Multiscale, GivesTheSameBitsForAnyNumberOfThreads) {
+    const SubdivisionModel model = square_metre(3, MaterialLaw::denim_stable, anywhere);
+    Positions one, two;
+    {
+        const ThreadLimit limit(1);
+        one = run_cloth(model).positions;
+    }
+    {
+        const ThreadLimit limit(2);
+        two = run_cloth(model).positions;
+    }
+    EXPECT_EQ(one, two);
+}
+
+TEST(Multiscale, ResumesToTheSameBits) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
+    model.solve.duration = 0.4;
+    model.solve.time_step = 0.1;
+    model.solve.rmtr.penalty = 1e6;
+    const RunResult uninterrupted = run_cloth(model);
+    EXPECT_EQ(uninterrupted.report.status, RunStatus::converged) << uninterrupted.report.message;
+    Context context;
+    Witness cut(&context, 2);
+    EXPECT_EQ(run_multiscale(model, {}, cut, context).report.status, RunStatus::interrupted);
+    ASSERT_TRUE(cut.last);
+    EXPECT_EQ(cut.last->step, 2);
+    RunOptions options;
+    options.resume = &*cut.last;
+    const RunResult resumed = run_cloth(model, options);
+    EXPECT_EQ(resumed.positions, uninterrupted.positions);
+    EXPECT_EQ(resumed.report.levels.front().steps, 4);
+}
+
+TEST(Multiscale, SaysWhenAHandleIsTooSoftToFollow) {
+    SubdivisionModel model = square_metre(1, MaterialLaw::denim_stable, anywhere);
+    model.solve.rmtr.penalty = 1e3;
+    const RunResult result = run_cloth(model);
+    EXPECT_EQ(result.report.status, RunStatus::not_converged);
+    ASSERT_EQ(result.report.lagging.size(), 1u);
+    EXPECT_GT(result.report.lagging[0].distance, 1.4e-4);
+}
+
+TEST(Multiscale, NeverCallsACapConverged) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, on_two_sides);
+    model.solve.rmtr.max_cycles = 2;
+    const RunResult result = run_cloth(model);
+    EXPECT_EQ(result.report.status, RunStatus::not_converged);
+    EXPECT_FALSE(result.report.levels.front().equilibrium);
+    EXPECT_NE(result.report.message.find("iteration cap"), std::string::npos) << result.report.message;
+}
+
+} // namespace
+} // namespace plisse

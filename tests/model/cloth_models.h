@@ -1,0 +1,53 @@
+#pragma once
+
+#include <functional>
+
+#include <plisse/model/subdivision_model.h>
+
+namespace plisse {
+
+/// A place of the boundary at rest.
+using OnBoundary = std::function<bool(const Vec3&)>;
+
+/// The sides of the finest level whose ends are both where the condition holds.
+inline std::vector<int> boundary_sides(const SubdivisionModel& model, const OnBoundary& where) {
+    const ControlMesh& mesh = model.levels.mesh(model.levels.level_count() - 1);
+    std::vector<int> sides;
+    for (std::size_t s = 0; s < mesh.boundary.size(); ++s) {
+        const Quad& quad = mesh.faces[static_cast<std::size_t>(mesh.boundary[s].face)];
+        const auto side = static_cast<std::size_t>(mesh.boundary[s].side);
+        if (where(model.surface.positions.col(quad[side])) && where(model.surface.positions.col(quad[(side + 1) % 4])))
+            sides.push_back(static_cast<int>(s));
+    }
+    return sides;
+}
+
+/// A square metre of denim of 4 x 4 faces on level 0, flat at height 0, held where the condition holds, which falls for
+/// a second in one step: the setting of the paper's experiments.
+inline SubdivisionModel square_metre(int levels, MaterialLaw law, const OnBoundary& held,
+                                     SurfaceVariables variables = SurfaceVariables::boundary_curve) {
+    SubdivisionModel model(SubdivisionLevels(quad_sheet({1, 1}, {4, 4}), levels, variables));
+    model.name = "square metre";
+    model.surface = limit_surface(model.levels, levels - 1);
+    model.material.thickness = 6.6e-4;
+    model.material.density = 0.4 / model.material.thickness;
+    model.material.law = law;
+    BoundaryHandle handle;
+    handle.name = "held";
+    handle.sides = boundary_sides(model, held);
+    model.handles.push_back(handle);
+    model.solve.method = Method::rmtr;
+    model.solve.time_step = model.solve.duration = model.solve.frame_interval = 1;
+    model.solve.dynamics = true;
+    model.solve.settle = false;
+    return model;
+}
+
+inline bool anywhere(const Vec3&) {
+    return true;
+}
+inline bool on_two_sides(const Vec3& p) {
+    return p.x() < -0.499 || p.z() < -0.499;
+}
+
+} // namespace plisse
