@@ -18,7 +18,18 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-/// What frames show: every level's limit surface at its own vertices.
+void append_obstacles(const SubdivisionModel& model, HierarchyLevel& level) {
+    const auto first = static_cast<int>(level.rest.cols());
+    Positions all(3, first + model.obstacles.vertex_count());
+    all << level.rest, model.obstacles.positions;
+    level.rest = std::move(all);
+    for (const Face& face : model.obstacles.faces)
+        level.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+    for (const int obstacle : model.obstacle_of_vertex)
+        level.part.push_back(1 + obstacle);
+}
+
+/// What frames show: every level's limit surface at its own vertices, and the obstacles.
 Hierarchy limit_surfaces(const SubdivisionModel& model) {
     Hierarchy shown;
     for (int l = 0; l < model.levels.level_count(); ++l) {
@@ -27,6 +38,7 @@ Hierarchy limit_surfaces(const SubdivisionModel& model) {
         level.rest = std::move(surface.positions);
         level.faces = std::move(surface.faces);
         level.part.assign(static_cast<std::size_t>(level.rest.cols()), 0);
+        append_obstacles(model, level);
     }
     return shown;
 }
@@ -59,7 +71,12 @@ private:
     void fail(RunStatus status, const std::string& message);
 
     int finest() const { return model_.levels.level_count() - 1; }
-    Positions surface() const { return as_positions(x_) * limit_weights_.transpose(); }
+    /// As frames show it.
+    Positions surface() const {
+        Positions all = shown_.finest().rest;
+        all.leftCols(limit_weights_.rows()) = as_positions(x_) * limit_weights_.transpose();
+        return all;
+    }
 
     const SubdivisionModel& model_;
     const SolveSettings& settings_;
@@ -179,7 +196,9 @@ void MultiscaleDriver::measure() {
     const SubdivisionProblem::Energies energies = stepper_.finest().energies(x_);
     report.energy.elastic = energies.elastic;
     report.energy.gravity = energies.gravity;
-    report.min_gap = std::numeric_limits<double>::infinity();
+    report.energy.contact = energies.contact;
+    LevelContact* contact = stepper_.finest().contact();
+    report.min_gap = contact ? contact->min_gap(as_positions(x_)) : std::numeric_limits<double>::infinity();
     report.max_stretch = stepper_.finest().largest_stretch(x_);
     report.residual = stepper_.finest().residual(x_);
     report.reactions = reactions();
@@ -212,7 +231,7 @@ std::vector<Reaction> MultiscaleDriver::reactions() {
 }
 
 void MultiscaleDriver::find_lagging() {
-    const double allowed = 1e-4 * bounding_box(shown_.finest().rest).diagonal();
+    const double allowed = 1e-4 * bounding_box(model_.surface.positions).diagonal();
     const std::vector<double> away = stepper_.finest().away_from_targets(x_);
     const std::vector<int>& handle_of = stepper_.finest().handle_of_place();
     for (std::size_t h = 0; h < model_.handles.size(); ++h) {

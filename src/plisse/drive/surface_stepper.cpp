@@ -32,6 +32,38 @@ private:
     LeastSquaresProjection projection_;
 };
 
+/// Tells the coarser level where the finer one's surface is whenever a point is taken down to it.
+class ContactTransfer final : public LevelTransfer {
+public:
+    ContactTransfer(std::unique_ptr<LevelTransfer> map, const LevelContact& fine, LevelContact& coarse)
+        : map_(std::move(map)), fine_(fine), coarse_(coarse) {}
+    const ScalarTransfer& prolongation() const override { return map_->prolongation(); }
+    VecX project(const VecX& fine) const override {
+        VecX coarse = map_->project(fine);
+        coarse_.correct(as_positions(coarse), fine_.limit_points(as_positions(fine)));
+        return coarse;
+    }
+
+private:
+    std::unique_ptr<LevelTransfer> map_;
+    const LevelContact& fine_;
+    LevelContact& coarse_;
+};
+
+bool may_touch(const SubdivisionModel& model) {
+    return model.contact.self || model.obstacles.face_count() > 0;
+}
+
+/// Of the finest limit points, from every level's variables.
+std::vector<VertexWeights> maps_to_surface(const SubdivisionModel& model) {
+    const int finest = model.levels.level_count() - 1;
+    std::vector<VertexWeights> maps(at(finest + 1));
+    maps.back() = model.levels.limit_points(finest).weights;
+    for (int l = finest - 1; l >= 0; --l)
+        maps[at(l)] = maps[at(l + 1)] * model.levels.subdivision(l);
+    return maps;
+}
+
 std::unique_ptr<LevelTransfer> transfer_between(const SubdivisionModel& model, int level) {
     const SubdivisionLevels& levels = model.levels;
     if (model.solve.rmtr.projection == SurfaceProjection::least_squares)
@@ -88,12 +120,21 @@ SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
     std::vector<HeldPlaces> held = held_places(model);
     const double penalty = boundary_penalty(model);
     const int finest = model.levels.level_count() - 1;
+    if (may_touch(model))
+        contact_ = std::make_unique<SurfaceContact>(model, context);
+    const std::vector<VertexWeights> to_surface = maps_to_surface(model);
     // Solvers of the finest level alone need no others.
     const int first = settings_.solver == SurfaceSolver::rmtr ? 0 : finest;
     for (int l = first; l <= finest; ++l)
-        problems_.push_back(std::make_unique<SubdivisionProblem>(model, l, std::move(held[at(l)]), penalty, context));
-    for (int l = first; l < finest; ++l)
-        transfers_.push_back(transfer_between(model, l));
+        problems_.push_back(std::make_unique<SubdivisionProblem>(model, l, std::move(held[at(l)]), penalty, context,
+                                                                 contact_.get(), to_surface[at(l)]));
+    for (int l = first; l < finest; ++l) {
+        std::unique_ptr<LevelTransfer> map = transfer_between(model, l);
+        if (contact_)
+            map = std::make_unique<ContactTransfer>(std::move(map), *problems_[at(l + 1 - first)]->contact(),
+                                                    *problems_[at(l - first)]->contact());
+        transfers_.push_back(std::move(map));
+    }
 }
 
 void SurfaceStepper::begin_step(const SurfaceStep& step) {

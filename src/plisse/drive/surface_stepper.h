@@ -51,6 +51,7 @@ private:
     const SubdivisionModel& model_;
     const RmtrSettings& settings_;
     Context& context_;
+    std::unique_ptr<SurfaceContact> contact_; ///< null where nothing may touch
     std::vector<std::unique_ptr<SubdivisionProblem>> problems_;
     std::vector<std::unique_ptr<LevelTransfer>> transfers_; ///< number l is between l and l + 1
 };

@@ -11,6 +11,7 @@
 #include <plisse/contact/candidates.h>
 #include <plisse/decimate/level_prolongation.h>
 #include <plisse/geometry/triangle_motion.h>
+#include <plisse/model/barrier_stiffness.h>
 #include <plisse/spatial/box.h>
 
 namespace plisse {
@@ -49,18 +50,12 @@ RegularStep largest_regular_step(const std::vector<Face>& faces, const Positions
     return limits.empty() ? RegularStep{} : *std::min_element(limits.begin(), limits.end(), shorter);
 }
 
-/// Barrier pressure scale: the pressure that a membrane of strain 0.1 exerts over a radius of 1/300 of the body, at
-/// most its bulk modulus. With the bulk modulus itself (C-IPC section 4), which a thin shell's contacts are nowhere
-/// near, the barrier would act like a switch (docs/decisions/0009).
+/// Of the body that asks for most.
 double contact_stiffness(const Model& model) {
     double stiffness = 0;
     for (const Body& body : model.bodies) {
-        const Material& material = body.material;
-        const double size =
-            bounding_box(model.mesh.positions.middleCols(body.vertices.begin, body.vertices.size())).diagonal();
-        const double bulk_modulus = material.youngs_modulus / (3 * (1 - 2 * std::min(material.poisson_ratio, 0.45)));
-        stiffness =
-            std::max(stiffness, std::min(30 * material.youngs_modulus * material.thickness / size, bulk_modulus));
+        const auto vertices = model.mesh.positions.middleCols(body.vertices.begin, body.vertices.size());
+        stiffness = std::max(stiffness, barrier_stiffness(body.material, bounding_box(vertices).diagonal()));
     }
     return stiffness;
 }

@@ -30,6 +30,10 @@ struct SubdivisionModel {
     Material material;
     Vec3 warp = Vec3::UnitX(); ///< direction of the warp at rest; on each face, its tangent part
     std::vector<BoundaryHandle> handles;
+    TriangleMesh obstacles;              ///< all of them in one mesh, m; they stand still
+    std::vector<int> obstacle_of_vertex; ///< number of the obstacle that each vertex belongs to, ascending
+    std::vector<std::string> obstacle_names;
+    ContactSettings contact;
     Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
     SolveSettings solve;
 };

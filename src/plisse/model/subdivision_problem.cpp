@@ -118,12 +118,13 @@ double boundary_penalty(const SubdivisionModel& model) {
 }
 
 SubdivisionProblem::SubdivisionProblem(const SubdivisionModel& model, int level, HeldPlaces held, double penalty,
-                                       Context& context)
+                                       Context& context, SurfaceContact* contact, const VertexWeights& to_surface)
     : model_(model), held_(std::move(held)), penalty_(penalty), context_(context),
       basis_(model.levels.surface_basis(level, quadrature_side)),
       shell_(basis_, model.levels.rest(level), section_of(model), std::vector<Vec3>{model.warp}),
       mass_(mass_of(model, level)), inertia_(mass_, model.levels.rest(level)),
       boundary_(held_.samples, penalty, model.levels.rest(level)), gravity_(Positions::Zero(3, mass_.cols())),
+      contact_(contact ? std::make_unique<LevelContact>(*contact, to_surface) : nullptr),
       no_targets_(VecX::Zero(3 * mass_.cols())) {
     std::set<Edge> pairs;
     for (const AssembledEnergy* part : std::initializer_list<const AssembledEnergy*>{&shell_, &inertia_, &boundary_})
@@ -150,6 +151,9 @@ void SubdivisionProblem::begin_step(const SurfaceStep& step, Positions inertial)
         targets.col(column) = model_.handles[at(held_.handle[p])].motion.apply(held_.rest.col(column), step.t);
     }
     boundary_.set_targets(std::move(targets));
+    system_.reset_pattern();
+    if (contact_)
+        contact_->stand_alone();
 }
 
 template <typename Visit>
@@ -165,25 +169,39 @@ double SubdivisionProblem::value(const VecX& x) {
     const PhaseScope scope(context_.times, Phase::elastic);
     double sum = 0;
     for_each_part([&](const AssembledEnergy& part) { sum += part.value(as_positions(x)); });
-    return sum;
+    return contact_ && std::isfinite(sum) ? sum + contact_->value(as_positions(x)) : sum;
 }
 
 void SubdivisionProblem::gradient(const VecX& x, VecX& gradient) {
     const PhaseScope scope(context_.times, Phase::elastic);
     Positions sum = Positions::Zero(3, x.size() / 3);
     for_each_part([&](const AssembledEnergy& part) { part.add_gradient(as_positions(x), sum); });
+    if (contact_)
+        contact_->add_gradient(as_positions(x), sum);
     gradient = as_vector(sum);
 }
 
 void SubdivisionProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
     const PhaseScope scope(context_.times, Phase::elastic);
-    system.begin({});
+    static const std::vector<Edge> none;
+    system.begin(contact_ ? contact_->find_hessian(as_positions(x), project) : none);
     for_each_part([&](const AssembledEnergy& part) { part.add_hessian(as_positions(x), system, project); });
+    if (contact_)
+        contact_->add_hessian(system);
 }
 
-SubdivisionProblem::Energies SubdivisionProblem::energies(const VecX& x) const {
+double SubdivisionProblem::max_step(const VecX& x, const VecX& d) {
+    return contact_ ? contact_->max_step(as_positions(x), as_positions(d)) : 1;
+}
+
+StepLimit SubdivisionProblem::step_limit(const VecX& x, const VecX& d) {
+    return max_step(x, d) < 1 ? StepLimit{"contact", "surfaces are near each other"} : StepLimit{};
+}
+
+SubdivisionProblem::Energies SubdivisionProblem::energies(const VecX& x) {
     const Positions q = as_positions(x);
-    return {shell_.value(q), gravity_.value(q), has_inertia_ ? inertia_.value(q) : 0, boundary_.value(q)};
+    return {shell_.value(q), gravity_.value(q), has_inertia_ ? inertia_.value(q) : 0, boundary_.value(q),
+            contact_ ? contact_->value(q) : 0};
 }
 
 SubdivisionProblem::Holding SubdivisionProblem::holding(const VecX& x) const {
@@ -198,15 +216,18 @@ std::vector<double> SubdivisionProblem::away_from_targets(const VecX& x) const {
     return {away.begin(), away.end()};
 }
 
-double SubdivisionProblem::residual(const VecX& x) const {
+double SubdivisionProblem::residual(const VecX& x) {
     Positions total = Positions::Zero(3, x.size() / 3);
     double largest = 0;
-    for_each_part([&](const AssembledEnergy& part) {
+    const auto add = [&](auto& part) {
         Positions forces = Positions::Zero(3, x.size() / 3);
         part.add_gradient(as_positions(x), forces);
         largest = std::max(largest, forces.colwise().norm().maxCoeff());
         total += forces;
-    });
+    };
+    for_each_part([&](const AssembledEnergy& part) { add(part); });
+    if (contact_)
+        add(*contact_);
     return largest > 0 ? total.colwise().norm().maxCoeff() / largest : 0;
 }
 

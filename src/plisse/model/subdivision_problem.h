@@ -7,6 +7,7 @@
 #include <plisse/energy/kirchhoff_love.h>
 #include <plisse/energy/surface_integrals.h>
 #include <plisse/model/subdivision_model.h>
+#include <plisse/model/surface_contact.h>
 #include <plisse/solve/objective.h>
 
 namespace plisse {
@@ -33,13 +34,15 @@ struct SurfaceStep {
 };
 
 /// What a step minimises on one level (RMTR section 3): elastic energy, gravity, inertia and what holds the boundary,
-///   f = int sum_k w_k psi dA - int rho g . x dA + 1/(2 dt^2) |q - q^|_M^2 + beta/2 sum_p l_p |x_p - b_p|^2,
-/// with l_p the length of boundary that place p stands for and b_p where its handle wants it. The unknowns are the
-/// level's variables, all of them free.
+///   f = int sum_k w_k psi dA - int rho g . x dA + 1/(2 dt^2) |q - q^|_M^2 + beta/2 sum_p l_p |x_p - b_p|^2 + B,
+/// with l_p the length of boundary that place p stands for, b_p where its handle wants it, and B the barrier of the
+/// finest level's surface. The unknowns are the level's variables, all of them free.
 class SubdivisionProblem final : public Objective {
 public:
-    /// The model must outlive the problem.
-    SubdivisionProblem(const SubdivisionModel& model, int level, HeldPlaces held, double penalty, Context& context);
+    /// contact: null where nothing may touch; to_surface: of the finest limit points, from this level's variables. The
+    /// model and the contact must outlive the problem.
+    SubdivisionProblem(const SubdivisionModel& model, int level, HeldPlaces held, double penalty, Context& context,
+                       SurfaceContact* contact = nullptr, const VertexWeights& to_surface = {});
 
     /// inertial: as in the step, of this level.
     void begin_step(const SurfaceStep& step, Positions inertial);
@@ -50,12 +53,16 @@ public:
     void assemble(const VecX& x, NewtonSystem& system, bool project) override;
     NewtonSystem& system() override { return system_; }
     const VecX& targets() const override { return no_targets_; }
-    double max_step(const VecX&, const VecX&) override { return 1; }
+    double max_step(const VecX& x, const VecX& d) override;
+    StepLimit step_limit(const VecX& x, const VecX& d) override;
+
+    /// Where there is contact: see LevelContact.
+    LevelContact* contact() { return contact_.get(); }
 
     struct Energies {
-        double elastic = 0, gravity = 0, inertia = 0, held = 0; ///< J
+        double elastic = 0, gravity = 0, inertia = 0, held = 0, contact = 0; ///< J
     };
-    Energies energies(const VecX& x) const;
+    Energies energies(const VecX& x);
     /// Force on each held place, N, and where it is.
     struct Holding {
         Positions places, forces;
@@ -65,7 +72,7 @@ public:
     std::vector<double> away_from_targets(const VecX& x) const;
     const std::vector<int>& handle_of_place() const { return held_.handle; }
     /// The largest force on a vertex of the total over the largest of any one term.
-    double residual(const VecX& x) const;
+    double residual(const VecX& x);
     /// Principal stretch of the middle surface, over the sample points.
     double largest_stretch(const VecX& x) const;
 
@@ -83,6 +90,7 @@ private:
     SurfaceInertia inertia_;
     PointPenalty boundary_;
     DeadLoads gravity_;
+    std::unique_ptr<LevelContact> contact_; ///< null where nothing may touch
     bool has_inertia_ = false;
     NewtonSystem system_;
     VecX no_targets_;

@@ -7,9 +7,11 @@
 #include <fmt/core.h>
 
 #include <plisse/base/error.h>
+#include <plisse/mesh/intersecting_surfaces.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
 #include <plisse/scene/select_vertices.h>
+#include <plisse/spatial/intersections.h>
 
 namespace plisse {
 
@@ -30,8 +32,18 @@ void expect_known_to_rmtr(const Scene& scene) {
     };
     if (scene.bodies.size() != 1)
         refuse("/bodies", "more than one body is not supported by", "give one, or another method");
-    if (!scene.obstacles.empty())
-        refuse("/obstacles", "obstacles are not supported by", "leave them out, or give another method");
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
+        if (!scene.obstacles[o].motion.empty())
+            refuse(fmt::format("/obstacles/{}/motion", o), "moving obstacles are not supported by",
+                   "leave it out, or give another method");
+    if (scene.contact.friction != 0 || !scene.contact.pairs.empty())
+        refuse("/contact/friction", "friction is not supported by", "give 0, or another method");
+    if (scene.contact.thickness != 0)
+        refuse("/contact/thickness", "a contact thickness is not supported by", "give 0, or another method");
+    for (std::size_t h = 0; h < scene.handles.size(); ++h)
+        if (scene.handles[h].axes != std::array{true, true, true})
+            refuse(fmt::format("/handles/{}/axes", h), "handles of some axes are not supported by",
+                   "leave it out: all three are held");
     if (!scene.loads.empty())
         refuse("/loads", "loads are not supported by", "leave them out, or give another method");
     const BodySpec& body = scene.bodies.front();
@@ -156,12 +168,44 @@ private:
     std::vector<bool> on_boundary_; ///< per domain vertex of the finest level
 };
 
+void add_obstacles(const Scene& scene, SubdivisionModel& model, Context& context) {
+    model.obstacles.positions.resize(3, 0);
+    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+        const ObstacleSpec& spec = scene.obstacles[o];
+        const std::string pointer = fmt::format("/obstacles/{}/mesh", o);
+        const TriangleMesh mesh = load_mesh(scene, spec.mesh, spec.transform, pointer, context);
+        expect_usable(scene, mesh, spec.mesh, pointer, true);
+        append_mesh(model.obstacles, mesh);
+        model.obstacle_of_vertex.resize(at(model.obstacles.vertex_count()), static_cast<int>(o));
+        model.obstacle_names.push_back(spec.name);
+    }
+}
+
+/// The cloth must begin clear of itself and of the obstacles.
+void expect_no_intersections(const Scene& scene, const SubdivisionModel& model) {
+    TriangleMesh all = model.surface;
+    append_mesh(all, model.obstacles);
+    std::vector<int> part(all.faces.size(), 0);
+    const auto cloth_faces = static_cast<int>(model.surface.faces.size());
+    for (std::size_t f = 0; f < model.obstacles.faces.size(); ++f)
+        part[model.surface.faces.size() + f] = 1 + model.obstacle_of_vertex[at(model.obstacles.faces[f][0])];
+    const auto of_obstacles = [&](int a, int b) { return a >= cloth_faces && b >= cloth_faces; };
+    const auto pairs = intersecting_pairs(all.positions, all.faces, of_obstacles);
+    if (pairs.empty())
+        return;
+    const Vec3 place = meeting_place(all.positions, all.faces[at(pairs.front()[0])], all.faces[at(pairs.front()[1])]);
+    throw IntersectingSurfaces(
+        scene.error_at("/bodies/0",
+                       fmt::format("{} pairs of faces intersect at rest, the first near ({:.6g}, {:.6g}, {:.6g})",
+                                   pairs.size(), place.x(), place.y(), place.z()),
+                       "separate the surfaces, by `transform` or in the meshes"),
+        all.positions, all.faces, pairs, part);
+}
+
 } // namespace
 
 SubdivisionModel build_subdivision_model(const Scene& scene, Context& context) {
     expect_known_to_rmtr(scene);
-    if (scene.contact.self)
-        context.on_message("the method rmtr knows no contact in this version: surfaces may pass through each other");
     const BodySpec& body = scene.bodies.front();
     SubdivisionModel model(subdivided(scene));
     model.name = scene.name;
@@ -169,6 +213,9 @@ SubdivisionModel build_subdivision_model(const Scene& scene, Context& context) {
     model.surface = limit_surface(model.levels, model.levels.level_count() - 1);
     model.material = body.material;
     model.warp = body.warp;
+    model.contact = {scene.contact.distance, scene.contact.thickness, scene.contact.self, 0, 1, {}};
+    add_obstacles(scene, model, context);
+    expect_no_intersections(scene, model);
     const BoundarySelector selector(scene, model.levels, model.surface);
     for (std::size_t i = 0; i < scene.handles.size(); ++i) {
         const HandleSpec& spec = scene.handles[i];

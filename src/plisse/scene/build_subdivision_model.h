@@ -11,9 +11,10 @@ namespace plisse {
 /// and two that are the ends of a side take all of it. Sides with both ends taken are held along their length, points
 /// beside them alone.
 ///
-/// Throws InputError for what the method does not know (other than one body, obstacles, loads, pressure, rest and start
-/// shapes, strain limits, bending of triangles), for meshes that cannot be subdivided, for selections that take nothing
-/// of the boundary, and for more levels than memory could hold.
+/// Throws InputError for what the method does not know (other than one body, moving obstacles, friction, loads,
+/// pressure, rest and start shapes, strain limits, bending scales), for meshes that cannot be subdivided, for
+/// selections that take nothing of the boundary, for more levels than memory could hold, and IntersectingSurfaces where
+/// they do at rest.
 SubdivisionModel build_subdivision_model(const Scene& scene, Context& context);
 
 } // namespace plisse
