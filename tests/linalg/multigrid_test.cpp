@@ -140,7 +140,7 @@ TEST_P(Preconditioning, IsSymmetricAndDefinite) {
 }
 
 // Above the lowest bending mode of a free plate: at 0 three rigid motions are singular.
-INSTANTIATE_TEST_SUITE_P(DefiniteAndNot, Preconditioning, testing::Values(10.0, -300.0, -3000.0));
+INSTANTIATE_TEST_SUITE_P(DefiniteAndNot, Preconditioning, testing::Values(10.0, -300.0, -1000.0));
 
 TEST(BlockGaussSeidel, IsTheProductOfItsTriangles) {
     const NewtonSystem system = spline::plate(4, 5);

@@ -35,21 +35,44 @@ double spectral_radius(const NewtonSystem& matrix, const DiagonalBlocks& diagona
     return radius;
 }
 
+/// Sums of |v'Hv| over the blocks H beside the diagonal in the row of each axis v of a diagonal block.
+Positions axis_couplings(const NewtonSystem& matrix, const std::vector<Mat3>& axes) {
+    Positions sums = Positions::Zero(3, matrix.row_count());
+    for (int c = 0; c < matrix.row_count(); ++c)
+        for (int k = matrix.column_starts()[at(c)] + 1; k < matrix.column_starts()[at(c) + 1]; ++k) {
+            const int r = matrix.block_rows()[at(k)];
+            const Mat3& block = matrix.blocks()[at(matrix.block_numbers()[at(k)])];
+            sums.col(c) += axes[at(c)].cwiseProduct(block * axes[at(c)]).colwise().sum().cwiseAbs().transpose();
+            sums.col(r) += axes[at(r)].cwiseProduct(block * axes[at(r)]).colwise().sum().cwiseAbs().transpose();
+        }
+    return sums;
+}
+
 } // namespace
 
 void DiagonalBlocks::set_matrix(const NewtonSystem& matrix) {
-    constexpr double least_share = 1e-10;
-    blocks_.resize(at(matrix.row_count()));
-    inverses_.resize(blocks_.size());
+    constexpr double least_share = 1e-10, weak = 0.05, dominant = 0.5;
+    const std::size_t count = at(matrix.row_count());
+    std::vector<Mat3> axes(count);
+    Positions values(3, matrix.row_count());
     parallel_for(matrix.row_count(), 256, [&](int row) {
         const int place = matrix.column_starts()[at(row)]; // the diagonal comes first
-        const Mat3& block = matrix.blocks()[at(matrix.block_numbers()[at(place)])];
-        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(block);
-        Vec3 values = eigen.eigenvalues().cwiseAbs();
-        values = values.maxCoeff() > 0 ? Vec3(values.cwiseMax(least_share * values.maxCoeff())) : Vec3(Vec3::Ones());
-        const Mat3& axes = eigen.eigenvectors();
-        blocks_[at(row)] = axes * values.asDiagonal() * axes.transpose();
-        inverses_[at(row)] = axes * values.cwiseInverse().asDiagonal() * axes.transpose();
+        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(matrix.blocks()[at(matrix.block_numbers()[at(place)])]);
+        axes[at(row)] = eigen.eigenvectors();
+        values.col(row) = eigen.eigenvalues();
+    });
+    const Positions couplings = axis_couplings(matrix, axes);
+    blocks_.resize(count);
+    inverses_.resize(count);
+    parallel_for(matrix.row_count(), 256, [&](int row) {
+        Vec3 value = values.col(row).cwiseAbs();
+        for (int k = 0; k < 3; ++k)
+            if (values(k, row) < weak * couplings(k, row))
+                value[k] = std::max(value[k], dominant * couplings(k, row));
+        value = value.maxCoeff() > 0 ? Vec3(value.cwiseMax(least_share * value.maxCoeff())) : Vec3(Vec3::Ones());
+        const Mat3& turn = axes[at(row)];
+        blocks_[at(row)] = turn * value.asDiagonal() * turn.transpose();
+        inverses_[at(row)] = turn * value.cwiseInverse().asDiagonal() * turn.transpose();
     });
 }
 

@@ -17,7 +17,8 @@ public:
 };
 
 /// The diagonal blocks of H made definite: eigenvalues are taken absolutely, and not below a tiny share of the block's
-/// largest. So they are at least those of H in every direction.
+/// largest; one that is negative or small beside what couples its axis to other rows, as under compression, is raised
+/// to half of that, without which sweeps blow up. So the blocks are at least those of H in every direction.
 class DiagonalBlocks {
 public:
     void set_matrix(const NewtonSystem& matrix);
