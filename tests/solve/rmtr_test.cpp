@@ -141,7 +141,7 @@ TEST(Rmtr, CountsWorkInUnitsOfTheFinestLevel) {
         });
     EXPECT_NEAR(summary.quadratic_units, quadratic_units, 1e-9);
     EXPECT_LE(summary.assembly_units, summary.quadratic_units);
-    EXPECT_GE(full_cycles, summary.cycles - 3);
+    EXPECT_GE(full_cycles, summary.cycles / 2);
     EXPECT_GE(summary.cycles, 4);
 }
 

@@ -51,7 +51,7 @@ Positions axis_couplings(const NewtonSystem& matrix, const std::vector<Mat3>& ax
 } // namespace
 
 void DiagonalBlocks::set_matrix(const NewtonSystem& matrix) {
-    constexpr double least_share = 1e-10, weak = 0.05, dominant = 0.5;
+    constexpr double least_share = 1e-10, weak = 0.005, dominant = 0.5;
     const std::size_t count = at(matrix.row_count());
     std::vector<Mat3> axes(count);
     Positions values(3, matrix.row_count());
