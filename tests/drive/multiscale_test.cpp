@@ -5,6 +5,7 @@
 #include <plisse/drive/surface_stepper.h>
 
 #include "../model/cloth_models.h"
+#include "small_models.h"
 #include "witness.h"
 
 namespace plisse {
@@ -83,6 +84,56 @@ TEST(Multiscale, HandlesCarryTheWeight) {
     ASSERT_EQ(result.report.reactions.size(), 1u);
     EXPECT_LT((result.report.reactions[0].force - Vec3(0, 0.4 * 9.81, 0)).norm(), 1e-6);
     EXPECT_LT(result.report.levels.front().residual, 1e-6);
+}
+
+TEST(Multiscale, ClothLiesOnTheGroundWithoutTouchingIt) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
+    model.contact.self = true;
+    model.contact.distance = 4e-3;
+    model.solve.rmtr.penalty = 1e6;
+    add_ground(model, -0.01);
+    Context context;
+    Witness witness;
+    const RunResult result = run_multiscale(model, {}, witness, context);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_EQ(witness.intersections, 0);
+    EXPECT_GT(result.report.levels.front().energy.contact, 0);
+    EXPECT_GT(result.report.levels.front().min_gap, 0);
+    EXPECT_GT(height_of_middle(model, result.positions), -0.01);
+    EXPECT_LT(result.report.levels.front().residual, 1e-5);
+}
+
+/// The method's smooth sheet and a mesh of triangles, hung by one side.
+TEST(Multiscale, HungSheetsAgreeWithTriangles) {
+    Material material;
+    material.bending = BendingModel::koiter;
+    const auto on_left = [](const Vec3& p) { return p.x() < -0.499; };
+
+    SubdivisionModel smooth = square_metre(3, MaterialLaw::isotropic, on_left);
+    smooth.material = material;
+    smooth.solve.duration = 0;
+    smooth.solve.settle = true;
+    const RunResult by_surface = run_cloth(smooth);
+    EXPECT_EQ(by_surface.report.status, RunStatus::converged) << by_surface.report.message;
+
+    Model triangles = empty_model("hung");
+    add_body(triangles, "cloth", material, sheet_mesh(1, 0.06));
+    Handle left;
+    left.name = "left";
+    for (int v = 0; v < triangles.mesh.vertex_count(); ++v)
+        if (on_left(triangles.mesh.positions.col(v)))
+            left.vertices.push_back(v);
+    triangles.handles.push_back(left);
+    triangles.hierarchy.levels = 1;
+    triangles.contact.self = false;
+    triangles.solve.duration = 0;
+    Witness witness;
+    const RunResult by_triangles = run_to_end(triangles, witness);
+    EXPECT_EQ(by_triangles.report.status, RunStatus::converged);
+
+    const double lowest = by_surface.positions.row(1).minCoeff();
+    EXPECT_LT(lowest, -1.001) << "its weight stretches it";
+    EXPECT_NEAR(lowest, by_triangles.positions.row(1).minCoeff(), 0.005 * std::abs(lowest));
 }
 
 TEST(Multiscale, GivesTheSameBitsForAnyNumberOfThreads) {

@@ -36,11 +36,24 @@ inline SubdivisionModel square_metre(int levels, MaterialLaw law, const OnBounda
     handle.name = "held";
     handle.sides = boundary_sides(model, held);
     model.handles.push_back(handle);
+    model.obstacles.positions.resize(3, 0);
+    model.contact.self = false;
     model.solve.method = Method::rmtr;
     model.solve.time_step = model.solve.duration = model.solve.frame_interval = 1;
     model.solve.dynamics = true;
     model.solve.settle = false;
     return model;
+}
+
+/// A triangle of ground below the middle of the sheet, as an obstacle.
+inline void add_ground(SubdivisionModel& model, double height) {
+    model.obstacles.positions.resize(3, 3);
+    model.obstacles.positions.col(0) = Vec3(-0.4, height, 0.3);
+    model.obstacles.positions.col(1) = Vec3(0.4, height, 0.3);
+    model.obstacles.positions.col(2) = Vec3(0.05, height, -0.35);
+    model.obstacles.faces = {{0, 1, 2}};
+    model.obstacle_of_vertex = {0, 0, 0};
+    model.obstacle_names = {"ground"};
 }
 
 inline bool anywhere(const Vec3&) {
