@@ -42,10 +42,37 @@ double squared_sweep_gap(const Stencil& from, const Stencil& to) {
     return squared;
 }
 
+/// A lower bound on the distance of two primitives, the first of `First` points: the room between two planes square to
+/// the line that joins their centres.
+template <int First>
+double plane_gap(const Stencil& x) {
+    const auto sum = [&](int axis, int begin, int end) {
+        double total = 0;
+        for (int i = begin; i < end; ++i)
+            total += x(axis, i) - x(axis, 0);
+        return total;
+    };
+    double normal[3], squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        normal[axis] = sum(axis, 0, First) / First - sum(axis, First, 4) / (4 - First);
+        squared += normal[axis] * normal[axis];
+    }
+    const auto height = [&](int i) {
+        return normal[0] * (x(0, i) - x(0, 0)) + normal[1] * (x(1, i) - x(1, 0)) + normal[2] * (x(2, i) - x(2, 0));
+    };
+    const double low = First == 1 ? 0 : std::min(0.0, height(1));
+    const double high = First == 1 ? std::max({height(1), height(2), height(3)}) : std::max(height(2), height(3));
+    return (low - high) / std::sqrt(squared);
+}
+
 /// The distance, or a lower bound that is at least `cut`.
 double distance_up_to(StencilKind kind, const Stencil& x, double cut) {
     const double box_squared = squared_sweep_distance(kind, x, x);
-    return std::sqrt(box_squared >= cut * cut ? box_squared : squared_distance(kind, x));
+    if (box_squared >= cut * cut)
+        return std::sqrt(box_squared);
+    // Most pairs of neighbours are that far apart, but not along an axis.
+    const double between_planes = kind == StencilKind::point_triangle ? plane_gap<1>(x) : plane_gap<2>(x);
+    return between_planes >= cut ? between_planes : std::sqrt(squared_distance(kind, x));
 }
 
 } // namespace
@@ -118,6 +145,7 @@ std::array<int, 4> Candidates::vertices(StencilKind kind, int i) const {
 
 void Candidates::set_regions(const Positions& x, const Positions* d, double share) {
     regions_.resize(static_cast<std::size_t>(x.cols()));
+    balls_.resize(regions_.size());
     parallel_for(static_cast<int>(mesh_.vertices.size()), 512, [&](int i) {
         const int v = mesh_.vertices[static_cast<std::size_t>(i)];
         Box box;
@@ -126,6 +154,7 @@ void Candidates::set_regions(const Positions& x, const Positions* d, double shar
             box.include(x.col(v) + share * d->col(v));
         box = box.inflated(slack_);
         regions_[static_cast<std::size_t>(v)] = box;
+        balls_[static_cast<std::size_t>(v)] = ball_around(box);
         vertex_boxes_[static_cast<std::size_t>(i)] = box.inflated(reach_);
     });
     parallel_for(static_cast<int>(mesh_.edges.size()), 512, [&](int i) {
@@ -147,13 +176,35 @@ bool Candidates::may_meet(int vertex, int other) const {
     return a == b ? self_ && !obstacle_a : !(obstacle_a && mesh_.obstacle[static_cast<std::size_t>(b)] != 0);
 }
 
+Candidates::Ball Candidates::ball_around(const Box& box) {
+    const Vec3 center = box.center();
+    const double rounding = 16 * std::numeric_limits<double>::epsilon() * center.lpNorm<Eigen::Infinity>();
+    return {center, 0.5 * box.diagonal() + rounding};
+}
+
+template <int First>
+bool Candidates::stay_apart(const std::array<int, 4>& vertices) const {
+    const auto ball = [&](int i) -> const Ball& {
+        return balls_[static_cast<std::size_t>(vertices[static_cast<std::size_t>(i)])];
+    };
+    Stencil centers;
+    double first = 0, second = 0;
+    for (int i = 0; i < 4; ++i) {
+        centers.col(i) = ball(i).center;
+        double& largest = i < First ? first : second;
+        largest = std::max(largest, ball(i).radius);
+    }
+    return plane_gap<First>(centers) > reach_ + first + second;
+}
+
 bool Candidates::find_pairs(std::size_t most) {
     return vertex_faces_.found.find_between(
                vertex_tree_, face_tree_,
                [&](int i, int f) {
                    const int v = mesh_.vertices[static_cast<std::size_t>(i)];
                    const Face& face = mesh_.faces[static_cast<std::size_t>(f)];
-                   return v != face[0] && v != face[1] && v != face[2] && may_meet(v, face[0]);
+                   return v != face[0] && v != face[1] && v != face[2] && may_meet(v, face[0]) &&
+                          !stay_apart<1>({v, face[0], face[1], face[2]});
                },
                most) &&
            edge_edges_.found.find_within(
@@ -161,7 +212,8 @@ bool Candidates::find_pairs(std::size_t most) {
                [&](int i, int j) {
                    const Edge &a = mesh_.edges[static_cast<std::size_t>(i)],
                               &b = mesh_.edges[static_cast<std::size_t>(j)];
-                   return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] && may_meet(a[0], b[0]);
+                   return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] && may_meet(a[0], b[0]) &&
+                          !stay_apart<2>({a[0], a[1], b[0], b[1]});
                },
                most);
 }

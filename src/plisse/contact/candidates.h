@@ -64,6 +64,10 @@ public:
     }
 
 private:
+    struct Ball {
+        Vec3 center;
+        double radius; ///< m
+    };
     struct Pairs {
         OverlapPairs found;
         std::vector<double> distances; ///< at measured_at_, or of the boxes there, m
@@ -76,12 +80,17 @@ private:
     bool find_pairs(std::size_t most);
     void measure(StencilKind kind, Pairs& pairs) const;
     bool may_meet(int vertex, int other) const;
+    /// Whether two primitives, the first of `First` vertices, surely stay further apart than the reach.
+    template <int First>
+    bool stay_apart(const std::array<int, 4>& vertices) const;
+    static Ball ball_around(const Box& box);
 
     const CollisionMesh& mesh_;
     double reach_;
     bool self_;
     double slack_;
     std::vector<Box> regions_;                                ///< per vertex; empty before the first search
+    std::vector<Ball> balls_;                                 ///< about the regions
     std::vector<Box> vertex_boxes_, edge_boxes_, face_boxes_; ///< of mesh.vertices, edges and faces
     BoxTree vertex_tree_, edge_tree_, face_tree_;
     Positions measured_at_{3, 0};

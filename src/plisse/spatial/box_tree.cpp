@@ -44,7 +44,20 @@ void BoxTree::FloatBox::include(const FloatBox& box) {
     }
 }
 
-BoxTree::BoxTree(std::span<const Box> boxes) : item_at_(boxes.size()), boxes_(boxes.size()) {
+BoxTree::Leaf::Leaf() {
+    for (std::size_t k = 0; k < leaf_size; ++k)
+        set(k, FloatBox());
+}
+
+void BoxTree::Leaf::set(std::size_t k, const FloatBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis][k] = box.low[axis];
+        high[axis][k] = box.high[axis];
+    }
+}
+
+BoxTree::BoxTree(std::span<const Box> boxes)
+    : item_at_(boxes.size()), leaves_((boxes.size() + leaf_size - 1) / leaf_size) {
     std::iota(item_at_.begin(), item_at_.end(), 0);
     if (!boxes.empty())
         build(boxes, 0, size());
@@ -80,14 +93,15 @@ void BoxTree::build(std::span<const Box> boxes, int begin, int end) {
 void BoxTree::refit(std::span<const Box> boxes) {
     assert(boxes.size() == item_at_.size());
     parallel_for(size(), 1024, [&](int p) {
-        boxes_[static_cast<std::size_t>(p)] = FloatBox(boxes[static_cast<std::size_t>(item_at(p))]);
+        leaves_[static_cast<std::size_t>(p / leaf_size)].set(static_cast<std::size_t>(p % leaf_size),
+                                                             FloatBox(boxes[static_cast<std::size_t>(item_at(p))]));
     });
     for (std::size_t n = nodes_.size(); n-- > 0;) {
         Node& node = nodes_[n];
         node.box = FloatBox();
         if (node.leaf >= 0) {
-            for (int p = node.leaf * leaf_size; p < end_of_leaf(node.leaf); ++p)
-                node.box.include(box_at(p));
+            for (std::size_t k = 0; k < leaf_size; ++k)
+                node.box.include(leaf_at(node.leaf).box(k));
         } else {
             const Node& first_child = nodes_[n + 1];
             node.box.include(first_child.box);

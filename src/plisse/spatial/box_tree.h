@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -30,9 +31,7 @@ public:
     void visit_overlaps(const Box& box, const Visit& visit) const {
         const FloatBox query(box);
         visit_leaves(0, query, [&](int leaf) {
-            for (int p = leaf * leaf_size; p < end_of_leaf(leaf); ++p)
-                if (box_at(p).overlaps(query))
-                    visit(item_at(p));
+            for_each_set_bit(leaf_at(leaf).overlaps(query), [&](int k) { visit(item_at(leaf * leaf_size + k)); });
         });
     }
 
@@ -69,6 +68,37 @@ private:
         }
     };
 
+    /// The boxes of a leaf side by side, so that one is compared with all at a time; places left over hold empty boxes.
+    struct Leaf {
+        std::array<std::array<float, leaf_size>, 3> low, high;
+
+        Leaf();
+        void set(std::size_t k, const FloatBox& box);
+        FloatBox box(std::size_t k) const {
+            FloatBox result;
+            result.low = {low[0][k], low[1][k], low[2][k]};
+            result.high = {high[0][k], high[1][k], high[2][k]};
+            return result;
+        }
+        /// Bit k: whether box k overlaps the other.
+        unsigned overlaps(const FloatBox& other) const {
+            unsigned bits = 0;
+            for (std::size_t k = 0; k < leaf_size; ++k) {
+                const bool overlap = (low[0][k] <= other.high[0]) & (low[1][k] <= other.high[1]) &
+                                     (low[2][k] <= other.high[2]) & (other.low[0] <= high[0][k]) &
+                                     (other.low[1] <= high[1][k]) & (other.low[2] <= high[2][k]);
+                bits |= overlap ? 1U << k : 0U;
+            }
+            return bits;
+        }
+    };
+
+    template <typename Visit>
+    static void for_each_set_bit(unsigned bits, const Visit& visit) {
+        for (; bits != 0; bits &= bits - 1)
+            visit(std::countr_zero(bits));
+    }
+
     /// Nodes lie in depth-first order, so the next node is the first child, and `skip` the node after the whole
     /// subtree.
     struct Node {
@@ -96,14 +126,17 @@ private:
     template <typename Visit>
     void visit_leaf_pairs(int leaf, const BoxTree& tree, int other, const Visit& visit) const {
         const bool same = &tree == this && leaf == other;
-        for (int p = leaf * leaf_size; p < end_of_leaf(leaf); ++p)
-            for (int q = same ? p + 1 : other * leaf_size; q < tree.end_of_leaf(other); ++q)
-                if (box_at(p).overlaps(tree.box_at(q)))
-                    visit(item_at(p), tree.item_at(q));
+        for (int k = 0; k < end_of_leaf(leaf) - leaf * leaf_size; ++k) {
+            const unsigned behind = same ? ~0U << (k + 1) : ~0U;
+            const unsigned bits = tree.leaf_at(other).overlaps(leaf_at(leaf).box(static_cast<std::size_t>(k)));
+            for_each_set_bit(bits & behind, [&](int other_k) {
+                visit(item_at(leaf * leaf_size + k), tree.item_at(other * leaf_size + other_k));
+            });
+        }
     }
 
     int item_at(int position) const { return item_at_[static_cast<std::size_t>(position)]; }
-    const FloatBox& box_at(int position) const { return boxes_[static_cast<std::size_t>(position)]; }
+    const Leaf& leaf_at(int leaf) const { return leaves_[static_cast<std::size_t>(leaf)]; }
     int end_of_leaf(int leaf) const { return std::min((leaf + 1) * leaf_size, size()); }
     const FloatBox& leaf_box(int leaf) const {
         return nodes_[static_cast<std::size_t>(node_of_leaf_[static_cast<std::size_t>(leaf)])].box;
@@ -111,8 +144,8 @@ private:
 
     void build(std::span<const Box> boxes, int begin, int end);
 
-    std::vector<int> item_at_;    ///< by position
-    std::vector<FloatBox> boxes_; ///< by position
+    std::vector<int> item_at_; ///< by position; those of one leaf follow each other
+    std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
     std::vector<int> node_of_leaf_;
 };
