@@ -170,6 +170,13 @@ SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, const std::function<void(const S
     options.stop.max_iterations = settings_.max_cycles;
     options.smoother = smoothing_by(settings_.smoother);
     options.finest = smoothing_by(settings_.finest_smoother);
+    if (settings_.finest_smoother == SurfaceSmoother::multigrid)
+        options.finest = newton_by_multigrid();
+    if (settings_.radii == SurfaceRadii::single) {
+        options.separate_radii = false;
+        options.longest_rest = 0;
+        options.least_restricted = 0;
+    }
     options.nested_cycles = settings_.nested_iteration ? settings_.max_cycles : 0;
     std::vector<Objective*> levels;
     for (const auto& problem : problems_)

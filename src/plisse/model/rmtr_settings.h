@@ -24,12 +24,19 @@ enum class SurfaceSmoother {
 /// How points of a fine level are taken to a coarser one.
 enum class SurfaceProjection { reverse_subdivision, least_squares };
 
+/// What bounds smoothing steps and coarse corrections of rmtr.
+enum class SurfaceRadii {
+    separate, ///< a radius of its own for each; corrections rest after rejections
+    single    ///< one for both: the paper's
+};
+
 /// Of the method rmtr.
 struct RmtrSettings {
     SurfaceSolver solver = SurfaceSolver::rmtr;
     SurfaceSmoother smoother = SurfaceSmoother::block_jacobi; ///< between the finest and the coarsest level
     SurfaceSmoother finest_smoother = SurfaceSmoother::multigrid;
     SurfaceProjection projection = SurfaceProjection::reverse_subdivision;
+    SurfaceRadii radii = SurfaceRadii::separate;
     bool boundary_variables = true; ///< points of the boundary curve instead of ghost points
     bool nested_iteration = true;   ///< each coarser level is solved first, for a start
     /// Of what holds a boundary, N/m^3; empty: h^-5 in SI units, h being the finest level's mean side (RMTR

@@ -117,6 +117,11 @@ inline const Choices<SurfaceProjection>& choices_of(SurfaceProjection) {
         {{"reverse-subdivision", P::reverse_subdivision}, {"least-squares", P::least_squares}}, {}};
     return all;
 }
+inline const Choices<SurfaceRadii>& choices_of(SurfaceRadii) {
+    using R = SurfaceRadii;
+    static const Choices<SurfaceRadii> all{{{"separate", R::separate}, {"single", R::single}}, {}};
+    return all;
+}
 inline const Choices<Method>& choices_of(Method) {
     using M = Method;
     static const Choices<Method> all{{{"progressive", M::progressive}, {"direct", M::direct}, {"rmtr", M::rmtr}}, {}};
@@ -347,6 +352,7 @@ void describe(Visitor& v, RmtrSettings& r) {
             "damped-newton, linearised");
     v.field("smoother", r.smoother, "on the levels of rmtr below the finest: preconditioner of conjugate gradients");
     v.field("finest_smoother", r.finest_smoother, "the same on the finest level");
+    v.field("radii", r.radii, "of smoothing steps and coarse corrections: single is the paper's");
     v.field("projection", r.projection, "how a fine state is taken to the next coarser level");
     v.field("boundary_variables", r.boundary_variables,
             "whether unknowns beyond the boundary are replaced by points of the boundary curve");

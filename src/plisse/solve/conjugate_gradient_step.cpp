@@ -85,7 +85,7 @@ ConjugateGradientStep::ConjugateGradientStep(const QuadraticOptions& options,
 
 void ConjugateGradientStep::set_matrix(const NewtonSystem& matrix) {
     matrix_ = &matrix;
-    if (preconditioner_)
+    if (preconditioner_ && !options_.project)
         preconditioner_->set_matrix(matrix);
 }
 

@@ -14,6 +14,8 @@ public:
     /// preconditioner: null for none.
     ConjugateGradientStep(const QuadraticOptions& options, std::unique_ptr<Preconditioner> preconditioner);
     void set_matrix(const NewtonSystem& matrix) override;
+    bool wants_definite() const override { return preconditioner_ && options_.project; }
+    void set_definite(const NewtonSystem& matrix) override { preconditioner_->set_matrix(matrix); }
     QuadraticStep minimize(const VecX& gradient, double radius) override;
 
 private:

@@ -28,6 +28,9 @@ struct QuadraticOptions {
     double tolerance =
         1e-3; ///< they end when the residual, in the norm of the preconditioner, has shrunk to this share
     MultigridOptions multigrid;
+    /// Builds the preconditioner from a positive semi-definite approximation of H, assembled for it; conjugate
+    /// gradients keep the true H.
+    bool project = false;
 };
 
 /// A step s of the model m(s) = g's + s'Hs/2.
@@ -51,6 +54,10 @@ public:
     virtual ~QuadraticSolver() = default;
     /// H, kept by reference; called whenever it has changed.
     virtual void set_matrix(const NewtonSystem& matrix) = 0;
+    /// Whether set_matrix is to be followed by set_definite, with a positive semi-definite approximation of H, kept by
+    /// reference.
+    virtual bool wants_definite() const { return false; }
+    virtual void set_definite(const NewtonSystem&) {}
     /// For the rows of the system; radius > 0.
     virtual QuadraticStep minimize(const VecX& gradient, double radius) = 0;
 };

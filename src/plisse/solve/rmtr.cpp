@@ -39,7 +39,9 @@ public:
     Rmtr(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers,
          const RmtrOptions& options, Context& context)
         : transfers_(transfers), options_(options), context_(context), work_(levels.size()),
-          remembered_(levels.size(), std::numeric_limits<double>::infinity()), norm_bound_(levels.size(), 1.0) {
+          remembered_(levels.size(),
+                      {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}),
+          norm_bound_(levels.size(), 1.0), resting_(levels.size(), 0), streak_(levels.size(), 0) {
         for (const LevelTransfer* transfer : transfers)
             prolongations_.push_back(&transfer->prolongation());
         for (std::size_t l = 0; l < levels.size(); ++l) {
@@ -54,16 +56,16 @@ public:
     RmtrSummary run(VecX& x, const std::function<void(const RmtrCycle&)>& observe) {
         TrustRegionIterate& top = *iterates_[finest()];
         StopTest stop(options_.stop);
-        double radius = options_.radius;
+        Radii radii{options_.radius, options_.radius};
         RmtrSummary summary;
         summary.levels.resize(iterates_.size());
         const auto ended = [&](TrustRegionEnd end) {
             summary.end = end;
             summary.value = top.value();
             summary.gradient_norm = top.gradient_norm();
-            summary.radius = radius;
+            summary.radius = radii.smoothing;
             summary.message = fmt::format("{} after {} cycles, with |g| = {:.3g} and radius {:.3g}", in_words(end),
-                                          summary.cycles, summary.gradient_norm, radius);
+                                          summary.cycles, summary.gradient_norm, radii.smoothing);
             return summary;
         };
         top.start(x);
@@ -76,73 +78,99 @@ public:
                 return ended(TrustRegionEnd::interrupted);
             if (summary.cycles >= options_.stop.max_iterations)
                 return ended(TrustRegionEnd::iteration_cap);
-            const double value = top.value(), radius_before = radius;
+            const double value = top.value(), radius_before = radii.smoothing;
             moved_ = hampered_ = cut_ = false;
-            radius = visit(finest(), radius, std::numeric_limits<double>::infinity());
+            radii = visit(finest(), radii, std::numeric_limits<double>::infinity());
             ++summary.cycles;
             const double length = (top.x() - x).norm(), change = value - top.value();
             x = top.x();
-            report(summary, radius, observe);
+            report(summary, radii.smoothing, observe);
             TrustRegionEnd end{};
             const bool in_noise = std::abs(change) < top.noise(value) && !hampered_;
             if (moved_ && !cut_ && stop.changed(change, length, radius_before, in_noise, end))
                 return ended(end);
-            if (!moved_ && radius < least_radius * std::max(1.0, x.norm()))
+            if (!moved_ && radii.smoothing < least_radius * std::max(1.0, x.norm()))
                 return ended(TrustRegionEnd::stalled);
         }
     }
 
 private:
+    /// What bounds a level's smoothing steps and its coarse corrections; both 0 where it has to be left.
+    struct Radii {
+        double smoothing, correction;
+    };
+
     static constexpr double least_radius = 1e-16;
 
     std::size_t finest() const { return iterates_.size() - 1; }
 
     const QuadraticOptions& quadratic_options(std::size_t level) const {
-        if (level == 0)
+        // Multigrid on a single level factorises.
+        const bool alone = transfers_.empty() && options_.finest.preconditioning == Preconditioning::multigrid;
+        if (level == 0 && !alone)
             return options_.coarsest;
         return level == transfers_.size() ? options_.finest : options_.smoother;
     }
 
-    /// A level's iterate has begun: smooths, corrects and smooths it, and returns the last radius; 0 where the level
-    /// had to be left.
-    double visit(std::size_t level, double radius, double radius_above) {
+    /// A level's iterate has begun: smooths, corrects and smooths it, and returns the last radii.
+    Radii visit(std::size_t level, Radii radii, double radius_above) {
         ++work_[level].visits;
-        radius = smooth(level, radius, radius_above, options_.pre_steps);
+        radii = smooth(level, radii, radius_above, options_.pre_steps);
         if (level > 0) {
-            if (radius > 0 && !context_.cancelled())
-                radius = correct(level, radius, radius_above);
+            if (radii.correction > 0 && !context_.cancelled() && is_worth_correcting(level))
+                radii = correct(level, radii, radius_above);
             if (iterates_[level]->gradient_norm() > options_.stop.gradient)
-                radius = smooth(level, radius, radius_above, options_.post_steps);
+                radii = smooth(level, radii, radius_above, options_.post_steps);
         }
-        return radius;
+        return radii;
     }
 
-    double smooth(std::size_t level, double radius, double radius_above, int steps) {
+    Radii smooth(std::size_t level, Radii radii, double radius_above, int steps) {
         TrustRegionIterate& iterate = *iterates_[level];
-        for (int step = 0, tries = 0; step < steps && radius > 0; ++step) {
+        for (int step = 0, tries = 0; step < steps && radii.smoothing > 0; ++step) {
             if (iterate.gradient_norm() < options_.stop.gradient || context_.cancelled())
                 break;
-            TrialStep trial = iterate.step(radius / norm_bound_[level]);
+            TrialStep trial = iterate.step(radii.smoothing / norm_bound_[level]);
             trial.norm *= norm_bound_[level];
             work_[level].quadratic_iterations += trial.quadratic_iterations;
             ++(trial.accepted ? work_[level].accepted : work_[level].rejected);
             on_tried(level, trial);
-            radius = bounded(level, next_radius(options_.constants, radius, trial), radius_above);
+            radii.smoothing = next_radius(options_.constants, radii.smoothing, trial);
+            if (!options_.separate_radii)
+                radii.correction = radii.smoothing;
+            radii = bounded(level, radii, radius_above);
             if (!trial.accepted && tries++ < options_.retries)
                 --step;
             else
                 tries = 0;
         }
-        return radius;
+        return radii;
     }
 
     /// Algorithm 4.3: what the level may still move without leaving the radius above.
-    double bounded(std::size_t level, double radius, double radius_above) const {
+    Radii bounded(std::size_t level, Radii radii, double radius_above) const {
         if (level == finest())
-            return radius;
+            return radii;
         const TrustRegionIterate& iterate = *iterates_[level];
         const double moved = norm_on_finest(level, iterate.x() - iterate.start_point());
-        return moved > (1 - options_.epsilon) * radius_above ? 0 : std::min(radius, radius_above - moved);
+        const double most = moved > (1 - options_.epsilon) * radius_above ? 0 : radius_above - moved;
+        return {std::min(radii.smoothing, most), std::min(radii.correction, most)};
+    }
+
+    /// False while corrections rest after rejections, and where the coarse level sees too little of the gradient.
+    bool is_worth_correcting(std::size_t level) {
+        if (resting_[level] > 0) {
+            --resting_[level];
+            return false;
+        }
+        const VecX& gradient = iterates_[level]->gradient();
+        return restricted(*prolongations_[level - 1], gradient).norm() >= options_.least_restricted * gradient.norm();
+    }
+
+    /// Rests double with every rejection in a row.
+    void rest_after(std::size_t level, bool accepted) {
+        streak_[level] = accepted ? 0 : streak_[level] + 1;
+        resting_[level] = std::min((1 << std::min(streak_[level], 20)) - 1, options_.longest_rest);
     }
 
     double norm_on_finest(std::size_t level, VecX v) const {
@@ -152,29 +180,36 @@ private:
     }
 
     /// The coarse-level correction of an iterate, accepted by the multilevel ratio (4.11).
-    double correct(std::size_t level, double radius, double radius_above) {
+    Radii correct(std::size_t level, Radii radii, double radius_above) {
         TrustRegionIterate &fine = *iterates_[level], &coarse = *iterates_[level - 1];
         const ScalarTransfer& s = *prolongations_[level - 1];
         coarse.start(transfers_[level - 1]->project(fine.x()), restricted(s, fine.gradient()));
         if (!std::isfinite(coarse.value()))
-            return radius;
-        double& remembered = remembered_[level - 1];
-        const double first =
-            options_.remember_radii ? std::min(radius, options_.constants.gamma2 * remembered) : radius;
-        const double last = visit(level - 1, first, radius);
-        if (last > 0)
+            return radii;
+        const double radius = radii.correction;
+        Radii& remembered = remembered_[level - 1];
+        Radii first{radius, radius};
+        if (options_.remember_radii)
+            first = {std::min(radius, options_.constants.gamma2 * remembered.smoothing),
+                     std::min(radius, options_.constants.gamma2 * remembered.correction)};
+        const Radii last = visit(level - 1, first, radius);
+        if (last.smoothing > 0)
             remembered = last;
         const VecX way = coarse.x() - coarse.start_point();
         if (way.isZero(0))
-            return radius;
+            return radii;
         const TrialStep trial = try_correction(fine, coarse, way, prolonged(s, way));
         on_tried(level, trial);
+        rest_after(level, trial.accepted);
         RmtrLevelWork& work = work_[level];
         ++(trial.accepted ? work.corrections_accepted : work.corrections_rejected);
         TrialStep on_finest = trial;
         on_finest.norm = norm_on_finest(level - 1, way);
         work.largest_correction = std::max(work.largest_correction, on_finest.norm / radius);
-        return bounded(level, next_radius(options_.constants, radius, on_finest), radius_above);
+        radii.correction = next_radius(options_.constants, radius, on_finest);
+        if (!options_.separate_radii)
+            radii.smoothing = radii.correction;
+        return bounded(level, radii, radius_above);
     }
 
     static TrialStep try_correction(TrustRegionIterate& fine, TrustRegionIterate& coarse, const VecX& way, VecX step) {
@@ -235,8 +270,10 @@ private:
     std::vector<std::unique_ptr<QuadraticSolver>> solvers_;
     std::vector<std::unique_ptr<TrustRegionIterate>> iterates_;
     std::vector<RmtrLevelWork> work_; ///< of the cycle
-    std::vector<double> remembered_;  ///< the radius each level was left with
+    std::vector<Radii> remembered_;   ///< the radii each level was left with
     std::vector<double> norm_bound_;  ///< |v|_l <= norm_bound_[l] |v|
+    std::vector<int> resting_;        ///< cycles for which the corrections of a level still rest
+    std::vector<int> streak_;         ///< rejected corrections in a row
     bool moved_ = false;              ///< the finest iterate, in this cycle
     bool cut_ = false;                ///< max_step cut a step of it, in this cycle
     bool hampered_ = false;           ///< a step of the finest iterate was rejected, or met a bound, in this cycle

@@ -38,6 +38,18 @@ inline QuadraticOptions smoothing_by_block_jacobi() {
     options.preconditioning = Preconditioning::block_jacobi;
     return options;
 }
+/// For the finest level alone: truncated Newton steps, by conjugate gradients on the true H. The preconditioner, a
+/// V-cycle for a positive semi-definite approximation of H, is also the norm of the radius.
+inline QuadraticOptions newton_by_multigrid() {
+    QuadraticOptions options;
+    options.method = QuadraticMethod::conjugate_gradients;
+    options.preconditioning = Preconditioning::multigrid;
+    options.norm = RadiusNorm::preconditioner;
+    options.project = true;
+    options.max_iterations = 100;
+    options.tolerance = 1e-2;
+    return options;
+}
 inline QuadraticOptions coarsest_by_dogleg() {
     QuadraticOptions options;
     options.method = QuadraticMethod::dogleg;
@@ -52,13 +64,22 @@ struct RmtrOptions {
     int pre_steps = 1, post_steps = 1;
     QuadraticOptions smoother = smoothing_by_block_jacobi(); ///< on the levels between
     QuadraticOptions finest = smoothing_by_block_jacobi();   ///< multigrid: Newton's method by preconditioned CG there
-    QuadraticOptions coarsest = coarsest_by_dogleg();
+    QuadraticOptions coarsest = coarsest_by_dogleg();        ///< of a single level too, unless `finest` is by multigrid
     /// Times that a rejected step is tried again at once with its smaller radius, for which nothing is assembled. The
     /// paper's 0 wastes the visit to a level whose first radius is too large.
     int retries = 4;
     /// Begins a visit to a coarse level with no more than gamma2 times the radius it was left with; the paper begins
     /// with the radius above whatever happened before.
     bool remember_radii = true;
+    /// Smoothing steps and coarse corrections each have a radius. With the paper's single one, corrections that are
+    /// rejected shorten the smoothing steps too, and the other way round.
+    bool separate_radii = true;
+    /// A level's corrections rest for 1, 3, 7 ... visits after each further rejection in a row, at most so many; 0 for
+    /// the paper's, which never rest.
+    int longest_rest = 31;
+    /// No correction where the restricted gradient |S'g| is below this share of |g| (Gratton, Sartenaer and Toint
+    /// 2008); 0 for the paper's.
+    double least_restricted = 0.1;
     int nested_cycles = 0; ///< > 0: the start is first improved on each coarser level in turn by so many cycles
 };
 

@@ -67,6 +67,12 @@ TrialStep TrustRegionIterate::step(double radius) {
     if (!std::exchange(matrix_is_current_, true)) {
         objective_.assemble(x_, system, false);
         solver_.set_matrix(system);
+        if (solver_.wants_definite()) {
+            if (!definite_)
+                definite_ = std::make_unique<NewtonSystem>(system);
+            objective_.assemble(x_, *definite_, true);
+            solver_.set_definite(*definite_);
+        }
         ++assemblies_;
     }
     const QuadraticStep model = solver_.minimize(system.gather(gradient_), radius);

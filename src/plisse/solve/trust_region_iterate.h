@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include <plisse/solve/objective.h>
 #include <plisse/solve/quadratic_step.h>
 
@@ -80,7 +82,8 @@ private:
     QuadraticSolver& solver_;
     const TrustRegionConstants& constants_;
     VecX x_, x0_, gradient_;
-    VecX tilt_; ///< dg; empty where it is zero
+    VecX tilt_;                              ///< dg; empty where it is zero
+    std::unique_ptr<NewtonSystem> definite_; ///< for the preconditioner, where the solver wants it
     double value_ = 0, start_value_ = 0;
     bool matrix_is_current_ = false;
     int evaluations_ = 0, assemblies_ = 0, quadratic_solves_ = 0;
