@@ -108,10 +108,11 @@ TEST(Rmtr, EndsAtAMinimumFromAnUnstableStart) {
     NewtonSystem& system = hierarchy.finest().system();
     hierarchy.finest().assemble(start, system, false);
     EXPECT_FALSE(ShiftedCholesky().try_factorize(system, 0));
-    for (const Preconditioning smoother : {Preconditioning::block_jacobi, Preconditioning::multigrid}) {
+    for (const QuadraticOptions& finest :
+         {smoothing_by_block_jacobi(), smoothing(Preconditioning::multigrid), newton_by_multigrid()}) {
         VecX x = start;
         RmtrOptions options;
-        options.finest = smoothing(smoother);
+        options.finest = finest;
         Context context;
         const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
         EXPECT_TRUE(summary.converged()) << summary.message;
@@ -120,6 +121,42 @@ TEST(Rmtr, EndsAtAMinimumFromAnUnstableStart) {
         hierarchy.finest().assemble(x, system, false);
         EXPECT_TRUE(ShiftedCholesky().try_factorize(system, 0));
     }
+}
+
+TEST(Rmtr, NewtonStepsByMultigridConvergeWithOrWithoutCorrections) {
+    NetHierarchy hierarchy(4, 3, buckling());
+    const double expected = reference_value(hierarchy, -0.1);
+    for (const double least_restricted : {0.0, 1e9})
+        for (const int nested : {0, 10}) {
+            VecX x = hierarchy.finest().start(-0.1);
+            RmtrOptions options;
+            options.finest = newton_by_multigrid();
+            options.least_restricted = least_restricted;
+            options.nested_cycles = nested;
+            Context context;
+            const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context);
+            EXPECT_TRUE(summary.converged()) << summary.message;
+            EXPECT_LE(summary.cycles, 12);
+            EXPECT_NEAR(summary.value, expected, 1e-8 * std::abs(expected));
+            EXPECT_EQ(summary.levels.back().corrections_accepted > 0, least_restricted == 0);
+        }
+}
+
+TEST(Rmtr, CorrectionsDoNotBoundSmoothingSteps) {
+    NetHierarchy hierarchy(4, 2, buckling());
+    std::vector<double> radii;
+    for (const bool separate : {false, true}) {
+        VecX x = hierarchy.finest().start(-0.1);
+        RmtrOptions options;
+        options.separate_radii = separate;
+        options.pre_steps = options.post_steps = 0;
+        options.least_restricted = 0;
+        options.stop.max_iterations = 1;
+        Context context;
+        radii.push_back(minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context).radius);
+    }
+    EXPECT_NE(radii[0], 1);
+    EXPECT_EQ(radii[1], 1);
 }
 
 TEST(Rmtr, CountsWorkInUnitsOfTheFinestLevel) {
