@@ -142,28 +142,13 @@ TEST(Rmtr, NewtonStepsByMultigridConvergeWithOrWithoutCorrections) {
         }
 }
 
-TEST(Rmtr, CorrectionsDoNotBoundSmoothingSteps) {
-    NetHierarchy hierarchy(4, 2, buckling());
-    std::vector<double> radii;
-    for (const bool separate : {false, true}) {
-        VecX x = hierarchy.finest().start(-0.1);
-        RmtrOptions options;
-        options.separate_radii = separate;
-        options.pre_steps = options.post_steps = 0;
-        options.least_restricted = 0;
-        options.stop.max_iterations = 1;
-        Context context;
-        radii.push_back(minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context).radius);
-    }
-    EXPECT_NE(radii[0], 1);
-    EXPECT_EQ(radii[1], 1);
-}
-
 TEST(Rmtr, CountsWorkInUnitsOfTheFinestLevel) {
     NetHierarchy hierarchy(2, 3, NetLaw{});
     VecX x = hierarchy.finest().start(0);
     RmtrOptions options;
     options.retries = 0;
+    options.longest_rest = 0;
+    options.least_restricted = 0;
     Context context;
     double quadratic_units = 0;
     int full_cycles = 0;
