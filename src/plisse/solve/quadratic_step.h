@@ -28,8 +28,9 @@ struct QuadraticOptions {
     double tolerance =
         1e-3; ///< they end when the residual, in the norm of the preconditioner, has shrunk to this share
     MultigridOptions multigrid;
-    /// Builds the preconditioner from a positive semi-definite approximation of H, assembled for it; conjugate
-    /// gradients keep the true H.
+    /// Conjugate gradients whose preconditioner is built from a positive semi-definite approximation of H. Where the
+    /// last step met no bound they work on the true H, elsewhere on the approximation: along negative curvature the
+    /// model promises more than the value keeps, and the radius stays short.
     bool project = false;
 };
 

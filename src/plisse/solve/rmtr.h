@@ -38,7 +38,7 @@ inline QuadraticOptions smoothing_by_block_jacobi() {
     options.preconditioning = Preconditioning::block_jacobi;
     return options;
 }
-/// For the finest level alone: truncated Newton steps, by conjugate gradients on the true H. The preconditioner, a
+/// For the finest level alone: truncated Newton steps, by conjugate gradients (see `project`). The preconditioner, a
 /// V-cycle for a positive semi-definite approximation of H, is also the norm of the radius.
 inline QuadraticOptions newton_by_multigrid() {
     QuadraticOptions options;

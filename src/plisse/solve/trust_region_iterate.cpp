@@ -34,7 +34,7 @@ void TrustRegionIterate::start(VecX x0, const VecX& gradient) {
 void TrustRegionIterate::begin(VecX x0) {
     x0_ = x_ = std::move(x0);
     value_ = start_value_ = value_at(x_);
-    matrix_is_current_ = false;
+    matrix_is_current_ = near_ = false;
 }
 
 double TrustRegionIterate::value_at(const VecX& x) {
@@ -62,19 +62,27 @@ void TrustRegionIterate::update_gradient() {
         gradient_ += tilt_;
 }
 
-TrialStep TrustRegionIterate::step(double radius) {
+void TrustRegionIterate::update_matrix() {
     NewtonSystem& system = objective_.system();
-    if (!std::exchange(matrix_is_current_, true)) {
-        objective_.assemble(x_, system, false);
-        solver_.set_matrix(system);
-        if (solver_.wants_definite()) {
-            if (!definite_)
-                definite_ = std::make_unique<NewtonSystem>(system);
-            objective_.assemble(x_, *definite_, true);
-            solver_.set_definite(*definite_);
-        }
+    const bool is_definite = solver_.wants_definite() && !near_;
+    objective_.assemble(x_, system, is_definite);
+    ++assemblies_;
+    solver_.set_matrix(system);
+    if (!solver_.wants_definite())
+        return;
+    if (!is_definite) {
+        if (!definite_)
+            definite_ = std::make_unique<NewtonSystem>(system);
+        objective_.assemble(x_, *definite_, true);
         ++assemblies_;
     }
+    solver_.set_definite(is_definite ? system : *definite_);
+}
+
+TrialStep TrustRegionIterate::step(double radius) {
+    NewtonSystem& system = objective_.system();
+    if (!std::exchange(matrix_is_current_, true))
+        update_matrix();
     const QuadraticStep model = solver_.minimize(system.gather(gradient_), radius);
     ++quadratic_solves_;
     TrialStep trial;
@@ -98,8 +106,10 @@ TrialStep TrustRegionIterate::step(double radius) {
     trial.ratio = trial.length > 0 ? agreement(trial.actual, trial.predicted, noise(value_)) : 0;
     trial.in_noise = std::abs(trial.actual) < noise(value_) && std::abs(trial.predicted) < noise(value_);
     trial.accepted = trial.ratio > constants_.eta1;
-    if (trial.accepted)
+    if (trial.accepted) {
+        near_ = !trial.on_boundary && !trial.cut;
         move_to(std::move(end), value);
+    }
     return trial;
 }
 

@@ -76,6 +76,7 @@ public:
 private:
     void begin(VecX x0);
     void update_gradient();
+    void update_matrix();
     VecX free_part(const VecX& vertices) const;
 
     Objective& objective_;
@@ -86,6 +87,7 @@ private:
     std::unique_ptr<NewtonSystem> definite_; ///< for the preconditioner, where the solver wants it
     double value_ = 0, start_value_ = 0;
     bool matrix_is_current_ = false;
+    bool near_ = false; ///< the last accepted step met no bound
     int evaluations_ = 0, assemblies_ = 0, quadratic_solves_ = 0;
 };
 
