@@ -97,7 +97,7 @@ TEST(Schema, ListsEveryKeyOfTheContract) {
     EXPECT_EQ(keys_of(properties), (Set{"plisse", "name", "bodies", "obstacles", "handles", "loads", "gravity",
                                         "contact", "hierarchy", "solve"}));
     EXPECT_EQ(keys_of(properties["bodies"]["items"]["properties"]),
-              (Set{"name", "mesh", "transform", "material", "pressure", "rest", "start"}));
+              (Set{"name", "mesh", "transform", "material", "pressure", "rest", "start", "warp"}));
     EXPECT_EQ(keys_of(properties["obstacles"]["items"]["properties"]),
               (Set{"name", "mesh", "transform", "motion", "progressive"}));
     EXPECT_EQ(keys_of(properties["handles"]["items"]["properties"]), (Set{"name", "body", "axes", "select", "motion"}));
@@ -108,10 +108,10 @@ TEST(Schema, ListsEveryKeyOfTheContract) {
               (Set{"levels", "coarsest_vertices", "operator", "bending_on", "source"}));
     EXPECT_EQ(keys_of(properties["solve"]["properties"]),
               (Set{"method", "level", "time_step", "duration", "settle", "max_settle_steps", "tolerance",
-                   "max_iterations_per_step", "frame_interval", "curvature", "gradient", "dynamics"}));
-    EXPECT_EQ(
-        keys_of(schema["$defs"]["material"]["anyOf"].back()["properties"]),
-        (Set{"density", "youngs_modulus", "poisson_ratio", "thickness", "bending", "bending_scale", "strain_limit"}));
+                   "max_iterations_per_step", "frame_interval", "curvature", "gradient", "dynamics", "rmtr"}));
+    EXPECT_EQ(keys_of(schema["$defs"]["material"]["anyOf"].back()["properties"]),
+              (Set{"density", "youngs_modulus", "poisson_ratio", "thickness", "bending", "bending_scale",
+                   "strain_limit", "law"}));
     EXPECT_EQ(schema["$defs"]["mesh"]["anyOf"].size(), 10u) << "a file and nine generators";
 }
 
