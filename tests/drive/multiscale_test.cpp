@@ -183,6 +183,23 @@ TEST(Multiscale, ResumesToTheSameBits) {
     EXPECT_EQ(resumed.report.levels.front().steps, 4);
 }
 
+TEST(Multiscale, ResumesWhereNothingIsLeftToSolve) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
+    model.solve.rmtr.penalty = 1e6;
+    model.handles[0].motion.translate.keys = {{0, Vec3::Zero()}, {1, Vec3(0, 0.1, 0)}};
+    Context context;
+    Witness witness;
+    const RunResult whole = run_multiscale(model, {}, witness, context);
+    EXPECT_EQ(whole.report.status, RunStatus::converged) << whole.report.message;
+    RunOptions options;
+    options.resume = &*witness.last;
+    const RunResult resumed = run_cloth(model, options);
+    EXPECT_EQ(resumed.report.status, RunStatus::converged) << resumed.report.message;
+    EXPECT_EQ(resumed.positions, whole.positions);
+    EXPECT_EQ(resumed.report.reactions[0].force, whole.report.reactions[0].force);
+    EXPECT_EQ(resumed.report.levels[0].residual, whole.report.levels[0].residual);
+}
+
 TEST(Multiscale, SaysWhenAHandleIsTooSoftToFollow) {
     SubdivisionModel model = square_metre(1, MaterialLaw::denim_stable, anywhere);
     model.solve.rmtr.penalty = 1e3;

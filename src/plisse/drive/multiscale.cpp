@@ -246,12 +246,16 @@ void MultiscaleDriver::find_lagging() {
             log_.report().lagging.push_back(lag);
     }
     if (!log_.report().lagging.empty())
-        fail(RunStatus::not_converged, "a script could not be followed: a larger solve.rmtr.penalty holds faster");
+        fail(RunStatus::not_converged, "a script could not be followed: a larger solve.rmtr.penalty holds more firmly");
 }
 
 void MultiscaleDriver::finish() {
     log_.frame(finest(), duration_, "final", surface());
-    measure();
+    SurfaceStep end;
+    end.t = duration_;
+    stepper_.begin_step(end); // a resumed run may have had nothing left to solve
+    if (log_.level_report(finest()).steps == 0)
+        measure();
     find_lagging();
     log_.report().reactions = log_.level_report(finest()).reactions;
     if (log_.report().intersecting_pairs > 0)

@@ -39,8 +39,10 @@ public:
 
     SubdivisionProblem& finest() { return *problems_.back(); }
 
-private:
+    /// Sets loads and handles as in the step; solve() does so itself.
     void begin_step(const SurfaceStep& step);
+
+private:
     SurfaceOutcome by_rmtr(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
     SurfaceOutcome by_trust_region(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
     SurfaceOutcome by_line_search(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
