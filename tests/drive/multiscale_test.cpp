@@ -117,6 +117,38 @@ TEST(Multiscale, ClothLiesOnTheGroundWithoutTouchingIt) {
     EXPECT_LT(result.report.levels.front().residual, 1e-5);
 }
 
+/// Where a coarse level led the sheet around a ball, the straight way from its place at rest leads through it.
+TEST(Multiscale, NestedIterationGoesOnFromWhereACoarseLevelEnded) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, nowhere);
+    for (const double side : {-0.5, 0.5}) {
+        BoundaryHandle corner;
+        Eigen::Index nearest = 0;
+        (model.surface.positions.colwise() - Vec3(side, 0, -0.5)).colwise().norm().minCoeff(&nearest);
+        corner.points = {static_cast<int>(nearest)};
+        corner.motion.translate = Track<Vec3>(Vec3(-0.4 * side, 0, 0));
+        model.handles.push_back(corner);
+    }
+    model.contact.distance = 4e-3;
+    model.solve.rmtr.max_cycles = 50; // of each level; it then slides over the ball
+    add_ball(model, {0, -0.25, 0}, 0.2);
+    Context context;
+    SurfaceStepper stepper(model, context);
+    SurfaceStep step;
+    step.t = step.time_step = 1;
+    step.inertial = model.levels.rest(1);
+    VecX x = as_vector(step.inertial);
+    std::vector<SurfaceIteration> first, last; // of each level
+    stepper.solve(step, x, [&](const SurfaceIteration& iteration) {
+        if (first.empty() || first.back().level != iteration.level) {
+            first.push_back(iteration);
+            last.emplace_back();
+        }
+        last.back() = iteration;
+    });
+    ASSERT_EQ(first.size(), 2u);
+    EXPECT_LT(first[1].value, last[0].value + 0.1 * std::abs(last[0].value));
+}
+
 /// The method's smooth sheet and a mesh of triangles, hung by one side.
 TEST(Multiscale, HungSheetsAgreeWithTriangles) {
     Material material;

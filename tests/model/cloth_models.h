@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include <plisse/mesh/generate.h>
 #include <plisse/model/subdivision_model.h>
 
 namespace plisse {
@@ -56,6 +57,22 @@ inline void add_ground(SubdivisionModel& model, double height) {
     model.obstacle_names = {"ground"};
 }
 
+/// A ball as an obstacle.
+inline void add_ball(SubdivisionModel& model, const Vec3& center, double radius) {
+    GeneratorOptions generator;
+    generator.shape = GeneratorShape::sphere;
+    generator.radius = radius;
+    generator.edge_length = radius / 4;
+    const TriangleMesh ball = generate_mesh(generator);
+    model.obstacles.positions = ball.positions.colwise() + center;
+    model.obstacles.faces = ball.faces;
+    model.obstacle_of_vertex.assign(static_cast<std::size_t>(ball.vertex_count()), 0);
+    model.obstacle_names = {"ball"};
+}
+
+inline bool nowhere(const Vec3&) {
+    return false;
+}
 inline bool anywhere(const Vec3&) {
     return true;
 }

@@ -280,7 +280,8 @@ private:
 };
 
 /// Nested iteration: the coarsest point is improved, its change prolonged and improved on the next level, up to the
-/// finest, where what comes of it replaces x if it is better and can be reached.
+/// finest, where what comes of it replaces x if it is better. No level's max_step is asked for the whole change: every
+/// step it is made of was within that of its own level, and a straight way to its end may be blocked.
 void improve_start(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers, VecX& x,
                    const RmtrOptions& options, Context& context, const std::function<void(const RmtrCycle&)>& observe,
                    RmtrSummary& summary) {
@@ -292,7 +293,7 @@ void improve_start(std::span<Objective* const> levels, std::span<const LevelTran
     std::reverse(starts.begin(), starts.end());
     VecX change = VecX::Zero(starts.front().size());
     for (std::size_t l = 0; l < transfers.size() && !context.cancelled(); ++l) {
-        VecX y = starts[l] + levels[l]->max_step(starts[l], change) * change;
+        VecX y = starts[l] + change;
         if (!(levels[l]->value(y) <= levels[l]->value(starts[l])))
             y = starts[l];
         const RmtrSummary part = Rmtr(levels.first(l + 1), transfers.first(l), nested, context).run(y, observe);
@@ -301,7 +302,7 @@ void improve_start(std::span<Objective* const> levels, std::span<const LevelTran
             summary.levels[k] += part.levels[k];
         change = prolonged(transfers[l]->prolongation(), y - starts[l]);
     }
-    const VecX end = x + levels.back()->max_step(x, change) * change;
+    const VecX end = x + change;
     if (levels.back()->value(end) < levels.back()->value(x)) {
         x = end;
         levels.back()->on_accepted(x);

@@ -116,8 +116,9 @@ struct RmtrSummary {
 /// Recursive multilevel trust region (Kopanicakova, Krause and Tamstorf 2019, algorithms 4.1-4.3) from x on the finest
 /// level, where f never rises by more than rounding. levels: coarsest first; transfers[l] is between l and l + 1; with
 /// one level the method is algorithm 4.1. A coarse level minimises f_l + <dg, x - x0>, within radii measured by |v|_l =
-/// |S ... S v| on the finest level; prolonged corrections are cut by max_step like any step. Where the finest quadratic
-/// solver is multigrid, all levels' unknowns must be free. on_accepted is called for the finest level.
+/// |S ... S v| on the finest level; prolonged corrections are cut by max_step like any step. Nested iteration takes a
+/// coarse level's way to be a safe one of the finest: max_step must guard the same on all levels. Where the finest
+/// quadratic solver is multigrid, all levels' unknowns must be free. on_accepted is called for the finest level.
 RmtrSummary minimize_by_rmtr(std::span<Objective* const> levels, std::span<const LevelTransfer* const> transfers,
                              VecX& x, const RmtrOptions& options, Context& context,
                              const std::function<void(const RmtrCycle&)>& observe = {});
