@@ -117,6 +117,68 @@ TEST(Multiscale, ClothLiesOnTheGroundWithoutTouchingIt) {
     EXPECT_LT(result.report.levels.front().residual, 1e-5);
 }
 
+/// A loose sheet on a slope, of which gravity's direction makes one.
+SubdivisionModel sheet_on_a_slope(double friction, double slope) {
+    SubdivisionModel model = square_metre(1, MaterialLaw::denim_stable, nowhere);
+    model.contact.distance = 2e-3;
+    model.contact.friction = friction;
+    model.contact.friction_velocity = 1e-4;
+    add_ground(model, -1e-3, 5);
+    model.gravity.keys = {{0, Vec3(0, -9.81, 0)}, {0.25, Vec3(0, -9.81, 0)}, {0.2501, 9.81 * Vec3(slope, -1, 0)}};
+    model.solve.time_step = 0.05;
+    model.solve.duration = 0.5;
+    return model;
+}
+
+/// Coulomb's law: a sheet whose friction is less than the slope falls with the rest of gravity, others stay.
+TEST(Multiscale, SheetsSlideDownSlopesThatAreTooSteepForTheirFriction) {
+    constexpr double slope = 0.3;
+    for (const double friction : {0.2, 0.4}) {
+        const SubdivisionModel model = sheet_on_a_slope(friction, slope);
+        Context context;
+        Witness witness;
+        const RunResult result = run_multiscale(model, {}, witness, context);
+        EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+        EXPECT_EQ(witness.intersections, 0);
+        const Positions moved = result.positions.leftCols(model.surface.vertex_count()) - model.surface.positions;
+        const double h = model.solve.time_step, acceleration = 9.81 * std::max(0.0, slope - friction);
+        const double steps = 5; // that it slides: implicit Euler's way is h^2 a (1 + 2 + ... )
+        EXPECT_NEAR(moved.row(0).mean(), h * h * acceleration * steps * (steps + 1) / 2, 5e-4);
+    }
+}
+
+TEST(Multiscale, ClothGivesWayToGroundThatRises) {
+    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
+    model.contact.distance = 4e-3;
+    model.solve.rmtr.penalty = 1e6;
+    model.solve.time_step = 0.5;
+    add_ground(model, -0.05);
+    model.obstacle_motions[0].translate.keys = {{0, Vec3::Zero()}, {1, Vec3(0, 0.1, 0)}};
+    Context context;
+    Witness witness;
+    const RunResult result = run_multiscale(model, {}, witness, context);
+    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+    EXPECT_EQ(witness.intersections, 0);
+    EXPECT_EQ(result.positions.rightCols(3), model.obstacles_at(1));
+    EXPECT_GT(height_of_middle(model, result.positions), 0.05);
+}
+
+TEST(Multiscale, SaysWhichObstacleIsHeldUp) {
+    SubdivisionModel model = square_metre(1, MaterialLaw::denim_stable, anywhere);
+    model.contact.distance = 4e-3;
+    add_ground(model, 0.05);
+    add_ground(model, -0.05);
+    model.obstacle_names = {"ceiling", "floor"};
+    model.obstacle_motions[1].translate.keys = {{0, Vec3::Zero()}, {1, Vec3(0, 0.2, 0)}};
+    Context context;
+    Witness witness;
+    const RunResult result = run_multiscale(model, {}, witness, context);
+    EXPECT_EQ(result.report.status, RunStatus::not_converged);
+    EXPECT_EQ(witness.intersections, 0);
+    EXPECT_NE(result.report.message.find("is held up by the cloth at"), std::string::npos) << result.report.message;
+    EXPECT_LT(result.positions(1, result.positions.cols() - 1), 0.05);
+}
+
 /// Where a coarse level led the sheet around a ball, the straight way from its place at rest leads through it.
 TEST(Multiscale, NestedIterationGoesOnFromWhereACoarseLevelEnded) {
     SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, nowhere);
@@ -200,7 +262,12 @@ TEST(Multiscale, ResumesToTheSameBits) {
     SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
     model.solve.duration = 0.4;
     model.solve.time_step = 0.1;
+    model.solve.settle = true;
     model.solve.rmtr.penalty = 1e6;
+    model.contact.distance = 4e-3;
+    model.contact.friction = 0.4;
+    add_ground(model, -0.01);
+    model.obstacle_motions[0].translate.keys = {{0, Vec3::Zero()}, {0.4, Vec3(0.01, 2e-3, 0)}};
     const RunResult uninterrupted = run_cloth(model);
     EXPECT_EQ(uninterrupted.report.status, RunStatus::converged) << uninterrupted.report.message;
     Context context;
@@ -212,7 +279,7 @@ TEST(Multiscale, ResumesToTheSameBits) {
     options.resume = &*cut.last;
     const RunResult resumed = run_cloth(model, options);
     EXPECT_EQ(resumed.positions, uninterrupted.positions);
-    EXPECT_EQ(resumed.report.levels.front().steps, 4);
+    EXPECT_EQ(resumed.report.levels.front().steps, 5);
 }
 
 TEST(Multiscale, ResumesWhereNothingIsLeftToSolve) {

@@ -46,15 +46,28 @@ inline SubdivisionModel square_metre(int levels, MaterialLaw law, const OnBounda
     return model;
 }
 
-/// A triangle of ground below the middle of the sheet, as an obstacle.
-inline void add_ground(SubdivisionModel& model, double height) {
-    model.obstacles.positions.resize(3, 3);
-    model.obstacles.positions.col(0) = Vec3(-0.4, height, 0.3);
-    model.obstacles.positions.col(1) = Vec3(0.4, height, 0.3);
-    model.obstacles.positions.col(2) = Vec3(0.05, height, -0.35);
-    model.obstacles.faces = {{0, 1, 2}};
-    model.obstacle_of_vertex = {0, 0, 0};
-    model.obstacle_names = {"ground"};
+inline void add_obstacle(SubdivisionModel& model, const std::string& name, const TriangleMesh& mesh) {
+    const int first = model.obstacles.vertex_count();
+    Positions all(3, first + mesh.vertex_count());
+    all << model.obstacles.positions, mesh.positions;
+    model.obstacles.positions = all;
+    for (const Face& face : mesh.faces)
+        model.obstacles.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+    model.obstacle_of_vertex.resize(static_cast<std::size_t>(model.obstacles.vertex_count()),
+                                    static_cast<int>(model.obstacle_names.size()));
+    model.obstacle_names.push_back(name);
+    model.obstacle_motions.emplace_back();
+}
+
+/// A triangle of ground below the middle of the sheet, or many times its size.
+inline void add_ground(SubdivisionModel& model, double height, double scale = 1) {
+    TriangleMesh ground;
+    ground.positions.resize(3, 3);
+    ground.positions.col(0) = Vec3(-0.4 * scale, height, 0.3 * scale);
+    ground.positions.col(1) = Vec3(0.4 * scale, height, 0.3 * scale);
+    ground.positions.col(2) = Vec3(0.05 * scale, height, -0.35 * scale);
+    ground.faces = {{0, 1, 2}};
+    add_obstacle(model, "ground", ground);
 }
 
 /// A ball as an obstacle.
@@ -63,11 +76,9 @@ inline void add_ball(SubdivisionModel& model, const Vec3& center, double radius)
     generator.shape = GeneratorShape::sphere;
     generator.radius = radius;
     generator.edge_length = radius / 4;
-    const TriangleMesh ball = generate_mesh(generator);
-    model.obstacles.positions = ball.positions.colwise() + center;
-    model.obstacles.faces = ball.faces;
-    model.obstacle_of_vertex.assign(static_cast<std::size_t>(ball.vertex_count()), 0);
-    model.obstacle_names = {"ball"};
+    TriangleMesh ball = generate_mesh(generator);
+    ball.positions.colwise() += center;
+    add_obstacle(model, "ball", ball);
 }
 
 inline bool nowhere(const Vec3&) {

@@ -14,6 +14,8 @@ class SurfaceContacts : public ::testing::Test {
 protected:
     SurfaceContacts() : model_(square_metre(2, MaterialLaw::denim_stable, anywhere)) {
         model_.contact.distance = 4e-3;
+        model_.contact.friction = 0.5;
+        model_.contact.friction_velocity = 1e-3;
         add_ground(model_, ground);
         shared_ = std::make_unique<SurfaceContact>(model_, context_);
         const VertexWeights limits = model_.levels.limit_points(1).weights;
@@ -48,6 +50,28 @@ protected:
         return dense(system);
     }
 
+    /// Both against differences.
+    static void expect_derivatives(LevelContact& contact, const Positions& q) {
+        Positions gradient = Positions::Zero(3, q.cols());
+        contact.add_gradient(q, gradient);
+        const Eigen::MatrixXd h = hessian(contact, q);
+        constexpr double step = 1e-7;
+        Positions slopes = q;
+        Eigen::MatrixXd curvatures(q.size(), q.size());
+        for (Eigen::Index i = 0; i < q.size(); ++i) {
+            Positions before = q, after = q;
+            before.reshaped()[i] -= step;
+            after.reshaped()[i] += step;
+            slopes.reshaped()[i] = (contact.value(after) - contact.value(before)) / (2 * step);
+            Positions g_before = Positions::Zero(3, q.cols()), g_after = g_before;
+            contact.add_gradient(before, g_before);
+            contact.add_gradient(after, g_after);
+            curvatures.col(i) = (g_after - g_before).reshaped() / (2 * step);
+        }
+        EXPECT_LT((slopes - gradient).norm(), 1e-6 * gradient.norm());
+        EXPECT_LT((curvatures - h).norm(), 1e-5 * h.norm());
+    }
+
     Context context_;
     SubdivisionModel model_;
     std::unique_ptr<SurfaceContact> shared_;
@@ -58,26 +82,42 @@ TEST_F(SurfaceContacts, RepelsWithDerivativesThatAgreeWithDifferences) {
     for (LevelContact* contact : {coarse_.get(), fine_.get()}) {
         const Positions q = bent(contact == coarse_.get() ? 0 : 1);
         EXPECT_GT(contact->value(q), 0);
+        EXPECT_EQ(contact->friction(q), 0);
         EXPECT_LT(contact->min_gap(q), 2.4e-3);
-        Positions gradient = Positions::Zero(3, q.cols());
-        contact->add_gradient(q, gradient);
-        const Eigen::MatrixXd h = hessian(*contact, q);
-        constexpr double step = 1e-7;
-        Positions slopes = q;
-        Eigen::MatrixXd curvatures(q.size(), q.size());
-        for (Eigen::Index i = 0; i < q.size(); ++i) {
-            Positions before = q, after = q;
-            before.reshaped()[i] -= step;
-            after.reshaped()[i] += step;
-            slopes.reshaped()[i] = (contact->value(after) - contact->value(before)) / (2 * step);
-            Positions g_before = Positions::Zero(3, q.cols()), g_after = g_before;
-            contact->add_gradient(before, g_before);
-            contact->add_gradient(after, g_after);
-            curvatures.col(i) = (g_after - g_before).reshaped() / (2 * step);
-        }
-        EXPECT_LT((slopes - gradient).norm(), 1e-6 * gradient.norm());
-        EXPECT_LT((curvatures - h).norm(), 1e-5 * h.norm());
+        expect_derivatives(*contact, q);
     }
+}
+
+TEST_F(SurfaceContacts, RubsWithDerivativesThatAgreeWithDifferences) {
+    for (LevelContact* contact : {coarse_.get(), fine_.get()}) {
+        const Positions start = bent(contact == coarse_.get() ? 0 : 1);
+        shared_->begin_step(contact->limit_points(start), {}, 1);
+        Positions q = start;
+        q.row(0).array() += 2e-5 * (1 + start.row(2).array()); // some stick, others slide
+        q.row(1).array() += 1e-4;
+        EXPECT_GT(contact->friction(q), 0);
+        expect_derivatives(*contact, q);
+        Positions up = start;
+        up.row(1).array() += 1; // where nothing repels, what presses is still that of the start
+        up.row(0).array() += 1e-5;
+        EXPECT_GT(contact->friction(up), 0);
+        expect_derivatives(*contact, up);
+    }
+}
+
+TEST_F(SurfaceContacts, ObstaclesGoAsFarAsTheClothLeavesThem) {
+    model_.obstacle_motions[0].translate.keys = {{0, Vec3::Zero()}, {1, Vec3(0, 0.1, 0)}};
+    const Positions surface = coarse_->limit_points(bent(0));
+    const Positions before = shared_->obstacles();
+    const double share = shared_->move_obstacles(surface, 1);
+    EXPECT_GT(share, 0);
+    EXPECT_LT(0.1 * share, 2e-3);
+    EXPECT_LT((shared_->obstacles() - before - share * (model_.obstacles_at(1) - before)).norm(), 1e-15);
+    EXPECT_NE(shared_->held_up(surface, 1).find("\"ground\" is held up"), std::string::npos);
+    Positions above = surface;
+    above.row(1).array() += 1;
+    EXPECT_EQ(shared_->move_obstacles(above, 1), 1);
+    EXPECT_EQ(shared_->obstacles(), model_.obstacles_at(1));
 }
 
 TEST_F(SurfaceContacts, CoarseStatesStandWhereTheirSubdivisionDoes) {

@@ -36,6 +36,8 @@ struct FrictionMemory {
 /// e being options.slip: friction grows from 0 to mu N over e and opposes the motion. It is convex in x.
 class Friction {
 public:
+    static constexpr double first_grip = 10; ///< of contacts whose normal forces are not known yet
+
     /// mesh must outlive the object.
     Friction(const CollisionMesh& mesh, const FrictionOptions& options);
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <plisse/drive/friction_updates.h>
 #include <plisse/drive/run_fraction.h>
 
 namespace plisse {
@@ -15,8 +16,6 @@ namespace {
 constexpr double largest_residual = 1e-3; // of the largest nodal force of any one term (CONTRACT.md)
 constexpr int preview_iteration_cap = 20;
 constexpr int final_iteration_cap = 1000;
-constexpr int most_friction_updates = 30; // of the normal forces, in one step
-constexpr int most_whole_updates = 5;     // then by halves, lest forces and positions chase each other in circles
 // Gaps of the tightest pair of a converged step, over that at which it begins to repel (docs/decisions/0017).
 constexpr double least_gap_share = 1e-3;      // below, the barrier is stiffened
 constexpr double wanted_gap_share = 3e-2;     // after that
@@ -135,8 +134,7 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
     bool gripped = problem_.friction_grips();
     NewtonSummary whole = solve_step(t, tolerance, phase, most_iterations);
     NewtonSummary part = whole;
-    const auto share = [](int update) { return update < most_whole_updates ? 1 : 0.5; };
-    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_, share(update)); ++update) {
+    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_, friction_share(update)); ++update) {
         if (part.iterations == 0 && !gripped)
             break;
         gripped = false;

@@ -21,7 +21,7 @@ std::size_t at(int index) {
 void append_obstacles(const SubdivisionModel& model, HierarchyLevel& level) {
     const auto first = static_cast<int>(level.rest.cols());
     Positions all(3, first + model.obstacles.vertex_count());
-    all << level.rest, model.obstacles.positions;
+    all << level.rest, model.obstacles_at(0);
     level.rest = std::move(all);
     for (const Face& face : model.obstacles.faces)
         level.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
@@ -61,7 +61,8 @@ public:
 private:
     void run_timeline();
     void settle();
-    /// Solves a step from x_. False when the run was cancelled, and x_ is as before.
+    /// Solves a step from x_. False when the run was cancelled, and x_ is as before, or where obstacles do not get
+    /// through to where the step has them.
     bool solve(const SurfaceStep& step, const char* phase, double fraction);
     void finish();
     void measure();
@@ -70,11 +71,14 @@ private:
     std::vector<Reaction> reactions();
     void fail(RunStatus status, const std::string& message);
 
+    int step_count() const { return static_cast<int>(std::ceil(duration_ / settings_.time_step - 1e-9)); }
     int finest() const { return model_.levels.level_count() - 1; }
     /// As frames show it.
     Positions surface() const {
         Positions all = shown_.finest().rest;
-        all.leftCols(limit_weights_.rows()) = as_positions(x_) * limit_weights_.transpose();
+        all.leftCols(model_.surface.vertex_count()) = stepper_.limit_points(x_);
+        if (const Positions obstacles = stepper_.obstacles(); obstacles.cols() > 0)
+            all.rightCols(obstacles.cols()) = obstacles;
         return all;
     }
 
@@ -86,7 +90,6 @@ private:
     Hierarchy shown_;
     RunLog log_;
     SurfaceStepper stepper_;
-    VertexWeights limit_weights_;
     Checkpoint progress_;
     VecX x_;
     PhaseTimes times_at_start_;
@@ -99,8 +102,7 @@ MultiscaleDriver::MultiscaleDriver(const SubdivisionModel& model, const RunOptio
       duration_(options.until >= 0 ? std::min(options.until, settings_.duration) : settings_.duration),
       shown_(limit_surfaces(model)), log_(shown_, 1, {shape_scale(model.surface.positions, model.surface.faces)},
                                           recorder, context, starting_report(model, options.resume)),
-      stepper_(model, context), limit_weights_(model.levels.limit_points(finest()).weights),
-      times_at_start_(context.times) {
+      stepper_(model, context), times_at_start_(context.times) {
     if (options.resume) {
         progress_ = *options.resume;
         log_.restore_frame_numbers(progress_.frame_numbers);
@@ -109,6 +111,7 @@ MultiscaleDriver::MultiscaleDriver(const SubdivisionModel& model, const RunOptio
         progress_.positions = model.levels.rest(finest());
     }
     x_ = as_vector(progress_.positions);
+    stepper_.place_obstacles(progress_.t);
 }
 
 void MultiscaleDriver::fail(RunStatus status, const std::string& message) {
@@ -146,17 +149,18 @@ bool MultiscaleDriver::solve(const SurfaceStep& step, const char* phase, double 
     report.equilibrium = is_converged(outcome.end);
     if (!report.equilibrium)
         fail(RunStatus::not_converged, fmt::format("t = {:.4g} s: {}", step.t, outcome.message));
-    return true;
+    return stepper_.obstacles() == model_.obstacles_at(step.t);
 }
 
 void MultiscaleDriver::run_timeline() {
-    const int steps = static_cast<int>(std::ceil(duration_ / settings_.time_step - 1e-9));
+    const int steps = step_count();
     if (progress_.step == 0)
         log_.frame(finest(), 0, "preview", surface());
     while (progress_.step < steps) {
         const double t_before = std::min(progress_.step * settings_.time_step, duration_);
         SurfaceStep step;
         step.t = std::min((progress_.step + 1) * settings_.time_step, duration_);
+        step.grips = progress_.friction.reference.cols() == 0;
         const Positions before = as_positions(x_);
         if (settings_.dynamics) {
             step.time_step = step.t - t_before;
@@ -167,6 +171,7 @@ void MultiscaleDriver::run_timeline() {
         if (!solve(step, "preview", static_cast<double>(progress_.step) / steps))
             return;
         progress_.velocity = (as_positions(x_) - before) / (step.t - t_before);
+        progress_.friction = stepper_.friction_memory();
         ++progress_.step;
         const double interval = settings_.frame_interval;
         if (std::floor(step.t / interval + 1e-9) > std::floor(t_before / interval + 1e-9) || progress_.step == steps)
@@ -178,6 +183,8 @@ void MultiscaleDriver::run_timeline() {
 void MultiscaleDriver::settle() {
     SurfaceStep step;
     step.t = duration_;
+    step.rubbing = progress_.friction;
+    step.grips = progress_.friction.reference.cols() == 0;
     if (!solve(step, "settle", 1))
         return;
     progress_.settled = true;
@@ -197,6 +204,7 @@ void MultiscaleDriver::measure() {
     report.energy.elastic = energies.elastic;
     report.energy.gravity = energies.gravity;
     report.energy.contact = energies.contact;
+    report.energy.friction = energies.friction;
     LevelContact* contact = stepper_.finest().contact();
     report.min_gap = contact ? contact->min_gap(as_positions(x_)) : std::numeric_limits<double>::infinity();
     report.max_stretch = stepper_.finest().largest_stretch(x_);
@@ -268,7 +276,7 @@ RunResult MultiscaleDriver::run() {
     log_.report().status = RunStatus::running;
     log_.publish();
     run_timeline();
-    if (settings_.settle && !progress_.settled && !context_.cancelled())
+    if (settings_.settle && !progress_.settled && progress_.step == step_count() && !context_.cancelled())
         settle();
     if (context_.cancelled())
         fail(RunStatus::interrupted, "interrupted");

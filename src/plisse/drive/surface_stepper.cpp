@@ -1,9 +1,11 @@
 #include <plisse/drive/surface_stepper.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include <plisse/drive/friction_updates.h>
 #include <plisse/linalg/linear_solver.h>
 #include <plisse/solve/newton.h>
 #include <plisse/solve/trust_region.h>
@@ -115,6 +117,18 @@ double gradient_norm(Objective& objective, const VecX& x) {
 
 } // namespace
 
+void SurfaceOutcome::go_on(const SurfaceOutcome& part) {
+    end = part.end;
+    message = part.message;
+    iterations += part.iterations;
+    gradient_norm = part.gradient_norm;
+    work.resize(std::max(work.size(), part.work.size()));
+    for (std::size_t l = 0; l < part.work.size(); ++l)
+        work[l] += part.work[l];
+    assembly_units += part.assembly_units;
+    quadratic_units += part.quadratic_units;
+}
+
 SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
     : model_(model), settings_(model.solve.rmtr), context_(context) {
     std::vector<HeldPlaces> held = held_places(model);
@@ -123,6 +137,7 @@ SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
     if (may_touch(model))
         contact_ = std::make_unique<SurfaceContact>(model, context);
     const std::vector<VertexWeights> to_surface = maps_to_surface(model);
+    limit_weights_ = to_surface.back();
     // Solvers of the finest level alone need no others.
     const int first = settings_.solver == SurfaceSolver::rmtr ? 0 : finest;
     for (int l = first; l <= finest; ++l)
@@ -137,6 +152,23 @@ SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
     }
 }
 
+Positions SurfaceStepper::obstacles() const {
+    return contact_ ? contact_->obstacles() : Positions(3, 0);
+}
+
+FrictionMemory SurfaceStepper::friction_memory() const {
+    return contact_ ? contact_->friction().memory() : FrictionMemory();
+}
+
+void SurfaceStepper::place_obstacles(double t) {
+    if (contact_)
+        contact_->place_obstacles(t);
+}
+
+Positions SurfaceStepper::limit_points(const VecX& x) const {
+    return as_positions(x) * limit_weights_.transpose();
+}
+
 void SurfaceStepper::begin_step(const SurfaceStep& step) {
     std::vector<Positions> inertial(problems_.size());
     inertial.back() = step.inertial;
@@ -146,28 +178,78 @@ void SurfaceStepper::begin_step(const SurfaceStep& step) {
         problems_[l]->begin_step(step, std::move(inertial[l]));
 }
 
-SurfaceOutcome SurfaceStepper::solve(const SurfaceStep& step, VecX& x,
-                                     const std::function<void(const SurfaceIteration&)>& observe) {
-    constexpr double damping = 0.3; // the paper's
+SurfaceOutcome SurfaceStepper::solve(const SurfaceStep& step, VecX& x, const Observer& observe) {
     begin_step(step);
+    if (!contact_)
+        return minimize(x, settings_.max_cycles, true, observe);
+    contact_->begin_step(limit_points(x), step.rubbing, step.grips ? Friction::first_grip : 1);
+    SurfaceOutcome outcome = minimize_with_obstacles(step.t, x, observe);
+    bring_friction_to_rest(x, outcome, observe);
+    return outcome;
+}
+
+SurfaceOutcome SurfaceStepper::minimize(VecX& x, int most_cycles, bool thorough, const Observer& observe) {
+    constexpr double damping = 0.3; // the paper's
+    for (const auto& problem : problems_)
+        if (problem->contact())
+            problem->contact()->stand_alone();
     switch (settings_.solver) {
     case SurfaceSolver::trust_region:
-        return by_trust_region(x, observe);
+        return by_trust_region(x, most_cycles, observe);
     case SurfaceSolver::newton:
-        return by_line_search(x, observe);
+        return by_line_search(x, most_cycles, observe);
     case SurfaceSolver::damped_newton:
-        return by_fixed_steps(x, damping, settings_.max_cycles, observe);
+        return by_fixed_steps(x, damping, most_cycles, observe);
     case SurfaceSolver::linearised:
         return by_fixed_steps(x, 1, 1, observe);
     case SurfaceSolver::rmtr:
         break;
     }
-    return by_rmtr(x, observe);
+    return by_rmtr(x, most_cycles, thorough && settings_.nested_iteration, observe);
 }
 
-SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+SurfaceOutcome SurfaceStepper::minimize_with_obstacles(double t, VecX& x, const Observer& observe) {
+    constexpr int cycles_on_the_way = 5;
+    constexpr int most_rounds_in_place = 30; // without a thousandth of the rest of the way
+    constexpr double least_share = 1e-3;
+    SurfaceOutcome whole;
+    for (int in_place = 0;;) {
+        const double share = contact_->move_obstacles(limit_points(x), t);
+        if (share == 1) {
+            whole.go_on(minimize(x, settings_.max_cycles, whole.iterations == 0, observe));
+            return whole;
+        }
+        in_place = share < least_share ? in_place + 1 : 0;
+        const SurfaceOutcome part = minimize(x, std::min(cycles_on_the_way, settings_.max_cycles), false, observe);
+        whole.go_on(part);
+        if (part.end == TrustRegionEnd::interrupted || part.end == TrustRegionEnd::infeasible)
+            return whole;
+        if (in_place == most_rounds_in_place) {
+            whole.end = TrustRegionEnd::stalled;
+            whole.message = contact_->held_up(limit_points(x), t);
+            return whole;
+        }
+    }
+}
+
+void SurfaceStepper::bring_friction_to_rest(VecX& x, SurfaceOutcome& outcome, const Observer& observe) {
+    for (int update = 0; is_converged(outcome.end); ++update) {
+        if (!contact_->update_friction(limit_points(x), friction_share(update)))
+            return;
+        const SurfaceOutcome part = minimize(x, settings_.max_cycles, false, observe);
+        outcome.go_on(part);
+        if (part.iterations == 0)
+            return;
+        if (update == most_friction_updates) {
+            outcome.end = TrustRegionEnd::iteration_cap;
+            outcome.message = fmt::format("the forces of friction have not come to rest in {} updates", update);
+        }
+    }
+}
+
+SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, int most_cycles, bool nested, const Observer& observe) {
     RmtrOptions options;
-    options.stop.max_iterations = settings_.max_cycles;
+    options.stop.max_iterations = most_cycles;
     options.smoother = smoothing_by(settings_.smoother);
     options.finest = smoothing_by(settings_.finest_smoother);
     if (settings_.finest_smoother == SurfaceSmoother::multigrid)
@@ -177,7 +259,7 @@ SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, const std::function<void(const S
         options.longest_rest = 0;
         options.least_restricted = 0;
     }
-    options.nested_cycles = settings_.nested_iteration ? settings_.max_cycles : 0;
+    options.nested_cycles = nested ? settings_.max_cycles : 0;
     std::vector<Objective*> levels;
     for (const auto& problem : problems_)
         levels.push_back(problem.get());
@@ -192,9 +274,9 @@ SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, const std::function<void(const S
             summary.levels, summary.assembly_units, summary.quadratic_units};
 }
 
-SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, int most, const Observer& observe) {
     TrustRegionOptions options;
-    options.stop.max_iterations = settings_.max_cycles;
+    options.stop.max_iterations = most;
     options.quadratic.method = QuadraticMethod::dogleg;
     const int finest = model_.levels.level_count() - 1;
     const TrustRegionSummary summary =
@@ -206,22 +288,21 @@ SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, const std::function<void
     return {summary.end, summary.message, summary.iterations, summary.gradient_norm, {}};
 }
 
-SurfaceOutcome SurfaceStepper::by_line_search(VecX& x, const std::function<void(const SurfaceIteration&)>& observe) {
+SurfaceOutcome SurfaceStepper::by_line_search(VecX& x, int most, const Observer& observe) {
     NewtonOptions options;
     options.tolerance = 1e-9; // m
-    options.max_iterations = settings_.max_cycles;
+    options.max_iterations = most;
     LinearSolver solver;
     const int level = model_.levels.level_count() - 1;
     const NewtonSummary summary =
-        minimize(finest(), solver, x, options, context_, [&](const NewtonIteration& iteration) {
+        plisse::minimize(finest(), solver, x, options, context_, [&](const NewtonIteration& iteration) {
             if (observe)
                 observe({iteration.iteration, level, iteration.value, iteration.step_norm, iteration.step_length});
         });
     return {end_of(summary.end), summary.message, summary.iterations, gradient_norm(finest(), x), {}};
 }
 
-SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most,
-                                              const std::function<void(const SurfaceIteration&)>& observe) {
+SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most, const Observer& observe) {
     const TrustRegionStop stop;
     LinearSolver solver;
     SurfaceOutcome outcome;

@@ -25,6 +25,9 @@ struct SurfaceOutcome {
     double gradient_norm = 0;
     std::vector<RmtrLevelWork> work; ///< per level, of rmtr
     double assembly_units = 0, quadratic_units = 0;
+
+    /// Adds what a later part of the step did, and ends as it did.
+    void go_on(const SurfaceOutcome& part);
 };
 
 /// Minimises steps of the method rmtr with the solver its settings name, on all levels of a model.
@@ -38,22 +41,38 @@ public:
                          const std::function<void(const SurfaceIteration&)>& observe = {});
 
     SubdivisionProblem& finest() { return *problems_.back(); }
+    /// The finest limit points at x, m.
+    Positions limit_points(const VecX& x) const;
+    /// Where the obstacles are now, m.
+    Positions obstacles() const;
+    /// Of the last step; empty where nothing can rub.
+    FrictionMemory friction_memory() const;
 
+    /// Puts obstacles where scripts have them at t, whatever is in the way: where a run begins or goes on.
+    void place_obstacles(double t);
     /// Sets loads and handles as in the step; solve() does so itself.
     void begin_step(const SurfaceStep& step);
 
 private:
-    SurfaceOutcome by_rmtr(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
-    SurfaceOutcome by_trust_region(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
-    SurfaceOutcome by_line_search(VecX& x, const std::function<void(const SurfaceIteration&)>& observe);
+    using Observer = std::function<void(const SurfaceIteration&)>;
+
+    /// From x to the minimum with everything else where it is. thorough: begins on the coarsest level, where asked for.
+    SurfaceOutcome minimize(VecX& x, int most_cycles, bool thorough, const Observer& observe);
+    /// The same, obstacles having moved to where they are at t before, cloth giving way.
+    SurfaceOutcome minimize_with_obstacles(double t, VecX& x, const Observer& observe);
+    /// Goes on until normal forces of friction no longer change.
+    void bring_friction_to_rest(VecX& x, SurfaceOutcome& outcome, const Observer& observe);
+    SurfaceOutcome by_rmtr(VecX& x, int most_cycles, bool nested, const Observer& observe);
+    SurfaceOutcome by_trust_region(VecX& x, int most, const Observer& observe);
+    SurfaceOutcome by_line_search(VecX& x, int most, const Observer& observe);
     /// Newton's steps times a factor, at most so many.
-    SurfaceOutcome by_fixed_steps(VecX& x, double factor, int most,
-                                  const std::function<void(const SurfaceIteration&)>& observe);
+    SurfaceOutcome by_fixed_steps(VecX& x, double factor, int most, const Observer& observe);
 
     const SubdivisionModel& model_;
     const RmtrSettings& settings_;
     Context& context_;
     std::unique_ptr<SurfaceContact> contact_; ///< null where nothing may touch
+    VertexWeights limit_weights_;             ///< of the finest limit points
     std::vector<std::unique_ptr<SubdivisionProblem>> problems_;
     std::vector<std::unique_ptr<LevelTransfer>> transfers_; ///< number l is between l and l + 1
 };

@@ -22,6 +22,17 @@ std::vector<int> numbered_parts(const Model& model, int count, const RangeOf& ra
 
 } // namespace
 
+std::vector<double> friction_coefficients(const ContactSettings& contact, int part_count) {
+    const auto parts = static_cast<std::size_t>(part_count);
+    std::vector<double> coefficients(parts * parts, contact.friction);
+    const auto of = [&](int a, int b) -> double& {
+        return coefficients[static_cast<std::size_t>(a) * parts + static_cast<std::size_t>(b)];
+    };
+    for (const ContactSettings::Pair& pair : contact.pairs)
+        of(pair.a, pair.b) = of(pair.b, pair.a) = pair.friction;
+    return coefficients;
+}
+
 std::vector<int> Model::vertex_parts() const {
     return numbered_parts(*this, mesh.vertex_count(), [](const auto& part) { return part.vertices; });
 }

@@ -91,6 +91,9 @@ struct ContactSettings {
     std::vector<Pair> pairs;
 };
 
+/// Coulomb's coefficients of all pairs of parts, row by row.
+std::vector<double> friction_coefficients(const ContactSettings& contact, int part_count);
+
 enum class HierarchySource {
     decimation, ///< the model's mesh is the finest level, the others come of it by edge collapse
     loop        ///< the model's mesh is the coarsest level, the others come of it by Loop's subdivision of bodies

@@ -23,7 +23,6 @@ std::size_t at(int index) {
 }
 
 constexpr int chunk_size = 512;
-constexpr double first_grip = 10; // of contacts whose normal forces are not known yet
 
 /// Largest fraction of the motion over which no triangle comes near collapsing, and the first that would.
 struct RegularStep {
@@ -58,15 +57,6 @@ double contact_stiffness(const Model& model) {
         stiffness = std::max(stiffness, barrier_stiffness(body.material, bounding_box(vertices).diagonal()));
     }
     return stiffness;
-}
-
-/// Coulomb's coefficients of all pairs of parts, row by row.
-std::vector<double> friction_coefficients(const Model& model) {
-    const std::size_t parts = at(model.part_count());
-    std::vector<double> coefficients(parts * parts, model.contact.friction);
-    for (const ContactSettings::Pair& pair : model.contact.pairs)
-        coefficients[at(pair.a) * parts + at(pair.b)] = coefficients[at(pair.b) * parts + at(pair.a)] = pair.friction;
-    return coefficients;
 }
 
 std::string place_in_words(const Vec3& place) {
@@ -139,7 +129,7 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     contact_->set_times(&context.times);
     friction_ = std::make_unique<Friction>(
         contact_->mesh(),
-        FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model)});
+        FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model.contact, model.part_count())});
     build_system(layout.prescribed);
 
     estimate_round_off();
@@ -224,7 +214,7 @@ void ShellProblem::begin_friction(const Positions& current, const FrictionMemory
     if (!friction_->possible())
         return;
     friction_->begin(memory);
-    friction_->lag(contact_->active_pairs(current), current, is_first ? first_grip : 1);
+    friction_->lag(contact_->active_pairs(current), current, is_first ? Friction::first_grip : 1);
 }
 
 void ShellProblem::remember_friction(const VecX& x) {

@@ -13,4 +13,13 @@ TriangleMesh limit_surface(const SubdivisionLevels& levels, int level) {
     return surface;
 }
 
+Positions SubdivisionModel::obstacles_at(double t) const {
+    Positions moved = obstacles.positions;
+    for (int v = 0; v < obstacles.vertex_count(); ++v) {
+        const int obstacle = obstacle_of_vertex[static_cast<std::size_t>(v)];
+        moved.col(v) = obstacle_motions[static_cast<std::size_t>(obstacle)].apply(obstacles.positions.col(v), t);
+    }
+    return moved;
+}
+
 } // namespace plisse

@@ -30,12 +30,16 @@ struct SubdivisionModel {
     Material material;
     Vec3 warp = Vec3::UnitX(); ///< direction of the warp at rest; on each face, its tangent part
     std::vector<BoundaryHandle> handles;
-    TriangleMesh obstacles;              ///< all of them in one mesh, m; they stand still
+    TriangleMesh obstacles;              ///< all of them in one mesh, m, before their motion
     std::vector<int> obstacle_of_vertex; ///< number of the obstacle that each vertex belongs to, ascending
     std::vector<std::string> obstacle_names;
+    std::vector<MotionTrack> obstacle_motions;
     ContactSettings contact;
     Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
     SolveSettings solve;
+
+    /// Where scripts have the obstacles, m.
+    Positions obstacles_at(double t) const;
 };
 
 /// The limit points of a level at rest, two triangles for every domain face.

@@ -200,8 +200,13 @@ StepLimit SubdivisionProblem::step_limit(const VecX& x, const VecX& d) {
 
 SubdivisionProblem::Energies SubdivisionProblem::energies(const VecX& x) {
     const Positions q = as_positions(x);
-    return {shell_.value(q), gravity_.value(q), has_inertia_ ? inertia_.value(q) : 0, boundary_.value(q),
-            contact_ ? contact_->value(q) : 0};
+    const double friction = contact_ ? contact_->friction(q) : 0;
+    return {shell_.value(q),
+            gravity_.value(q),
+            has_inertia_ ? inertia_.value(q) : 0,
+            boundary_.value(q),
+            contact_ ? contact_->value(q) - friction : 0,
+            friction};
 }
 
 SubdivisionProblem::Holding SubdivisionProblem::holding(const VecX& x) const {

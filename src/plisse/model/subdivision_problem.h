@@ -28,15 +28,17 @@ double boundary_penalty(const SubdivisionModel& model);
 
 /// One implicit Euler step, or where time_step is 0 the equilibrium at a time.
 struct SurfaceStep {
-    double t = 0;         ///< s
-    double time_step = 0; ///< s
-    Positions inertial;   ///< q_n + dt v_n, of the finest level; empty without inertia
+    double t = 0;           ///< s
+    double time_step = 0;   ///< s
+    Positions inertial;     ///< q_n + dt v_n, of the finest level; empty without inertia
+    FrictionMemory rubbing; ///< without a reference, the motion of contacts counts from where the step begins
+    bool grips = false;     ///< a first step, for which normal forces of friction have yet to build up
 };
 
 /// What a step minimises on one level (RMTR section 3): elastic energy, gravity, inertia and what holds the boundary,
 ///   f = int sum_k w_k psi dA - int rho g . x dA + 1/(2 dt^2) |q - q^|_M^2 + beta/2 sum_p l_p |x_p - b_p|^2 + B,
-/// with l_p the length of boundary that place p stands for, b_p where its handle wants it, and B the barrier of the
-/// finest level's surface. The unknowns are the level's variables, all of them free.
+/// with l_p the length of boundary that place p stands for, b_p where its handle wants it, and B barrier and
+/// friction of the finest level's surface. The unknowns are the level's variables, all of them free.
 class SubdivisionProblem final : public Objective {
 public:
     /// contact: null where nothing may touch; to_surface: of the finest limit points, from this level's variables. The
@@ -60,7 +62,7 @@ public:
     LevelContact* contact() { return contact_.get(); }
 
     struct Energies {
-        double elastic = 0, gravity = 0, inertia = 0, held = 0, contact = 0; ///< J
+        double elastic = 0, gravity = 0, inertia = 0, held = 0, contact = 0, friction = 0; ///< J
     };
     Energies energies(const VecX& x);
     /// Force on each held place, N, and where it is.

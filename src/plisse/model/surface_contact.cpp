@@ -1,6 +1,9 @@
 #include <plisse/model/surface_contact.h>
 
 #include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include <plisse/model/barrier_stiffness.h>
 #include <plisse/spatial/box.h>
@@ -16,7 +19,7 @@ std::size_t at(int index) {
 CollisionMesh collision_mesh(const SubdivisionModel& model) {
     const int limits = model.surface.vertex_count(), others = model.obstacles.vertex_count();
     Positions rest(3, limits + others);
-    rest << model.surface.positions, model.obstacles.positions;
+    rest << model.surface.positions, model.obstacles_at(0);
     std::vector<Face> faces = model.surface.faces;
     for (const Face& face : model.obstacles.faces)
         faces.push_back({face[0] + limits, face[1] + limits, face[2] + limits});
@@ -51,11 +54,17 @@ VertexWeights with_empty_rows(VertexWeights weights, Eigen::Index rows) {
     return weights;
 }
 
+FrictionOptions friction_options(const SubdivisionModel& model) {
+    const auto parts = static_cast<int>(1 + model.obstacle_names.size());
+    return {model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model.contact, parts)};
+}
+
 } // namespace
 
 SurfaceContact::SurfaceContact(const SubdivisionModel& model, Context& context)
-    : limit_count_(model.surface.vertex_count()), obstacles_(model.obstacles.positions),
-      contact_(collision_mesh(model), contact_options(model)), hessian_(free_system(contact_.mesh())) {
+    : model_(model), limit_count_(model.surface.vertex_count()), obstacles_(model.obstacles_at(0)),
+      contact_(collision_mesh(model), contact_options(model)), friction_(contact_.mesh(), friction_options(model)),
+      hessian_(free_system(contact_.mesh())) {
     hessian_.set_prescribed_step(VecX::Zero(contact_.mesh().rest.size()));
     contact_.set_times(&context.times);
 }
@@ -66,9 +75,76 @@ Positions SurfaceContact::with_obstacles(const Positions& limit_points) const {
     return all;
 }
 
+Positions SurfaceContact::obstacle_motion(double t) const {
+    Positions motion = Positions::Zero(3, limit_count_ + obstacles_.cols());
+    motion.rightCols(obstacles_.cols()) = model_.obstacles_at(t) - obstacles_;
+    return motion;
+}
+
+double SurfaceContact::move_obstacles(const Positions& limit_points, double t) {
+    const Positions motion = obstacle_motion(t);
+    if (motion.isZero(0))
+        return 1;
+    const double share = contact_.max_step(with_obstacles(limit_points), motion);
+    if (share == 1)
+        place_obstacles(t);
+    else
+        obstacles_ += share * motion.rightCols(obstacles_.cols());
+    return share;
+}
+
+std::string SurfaceContact::held_up(const Positions& limit_points, double t) {
+    const auto pair = contact_.limiting_pair(with_obstacles(limit_points), obstacle_motion(t));
+    if (!pair)
+        return {};
+    const CollisionMesh& mesh = contact_.mesh();
+    int part = 0;
+    for (const int vertex : mesh.stencil_vertices(pair->kind, pair->primitives))
+        part = std::max(part, mesh.part[at(vertex)]);
+    return fmt::format("obstacle \"{}\" is held up by the cloth at ({:.4g}, {:.4g}, {:.4g})",
+                       model_.obstacle_names[at(part - 1)], pair->place.x(), pair->place.y(), pair->place.z());
+}
+
+void SurfaceContact::begin_step(const Positions& limit_points, FrictionMemory memory, double grip) {
+    contact_.forget();
+    hessian_.reset_pattern();
+    friction_.begin(std::move(memory));
+    lag_friction(limit_points, grip, 1);
+}
+
+bool SurfaceContact::update_friction(const Positions& limit_points, double share) {
+    lag_friction(limit_points, 1, share);
+    return friction_.possible();
+}
+
+void SurfaceContact::lag_friction(const Positions& limit_points, double grip, double share) {
+    if (!friction_.possible())
+        return;
+    const Positions surface = with_obstacles(limit_points);
+    friction_.lag(contact_.active_pairs(surface), surface, grip, share);
+    rubbing_pairs_.clear();
+    friction_.append_coupled_pairs(rubbing_pairs_);
+}
+
+double SurfaceContact::value(const Positions& surface) {
+    return contact_.value(surface) + friction_.value(surface);
+}
+
+void SurfaceContact::add_gradient(const Positions& surface, Positions& gradient) {
+    contact_.add_gradient(surface, gradient);
+    friction_.add_gradient(surface, gradient);
+}
+
+bool SurfaceContact::acts(const Positions& surface) {
+    return !rubbing_pairs_.empty() || contact_.active_pair_count(surface) > 0;
+}
+
 const NewtonSystem& SurfaceContact::hessian(const Positions& surface, bool project) {
-    hessian_.begin(contact_.coupled_pairs(surface));
+    std::vector<Edge> coupled = contact_.coupled_pairs(surface);
+    coupled.insert(coupled.end(), rubbing_pairs_.begin(), rubbing_pairs_.end());
+    hessian_.begin(coupled);
     contact_.add_hessian(surface, hessian_, project);
+    friction_.add_hessian(surface, hessian_);
     return hessian_;
 }
 
@@ -102,12 +178,12 @@ const Positions& LevelContact::surface(const Positions& q) {
 }
 
 double LevelContact::value(const Positions& q) {
-    return shared_.contact().value(surface(q));
+    return shared_.value(surface(q));
 }
 
 void LevelContact::add_gradient(const Positions& q, Positions& gradient) {
     Positions forces = Positions::Zero(3, to_surface_.rows());
-    shared_.contact().add_gradient(surface(q), forces);
+    shared_.add_gradient(surface(q), forces);
     gradient += forces * to_surface_;
 }
 
@@ -119,7 +195,7 @@ double LevelContact::max_step(const Positions& q, const Positions& d) {
 const std::vector<Edge>& LevelContact::find_hessian(const Positions& q, bool project) {
     coupled_.clear();
     found_ = nullptr;
-    if (shared_.contact().active_pair_count(surface(q)) == 0)
+    if (!shared_.acts(surface(q)))
         return coupled_;
     found_ = &product_.compute(shared_.hessian(surface(q), project));
     for_each_block([&](int row, int column, const Mat3&) { coupled_.push_back({column, row}); });
@@ -144,6 +220,10 @@ void LevelContact::for_each_block(const Visit& visit) const {
 
 double LevelContact::min_gap(const Positions& q) {
     return shared_.contact().min_gap(surface(q));
+}
+
+double LevelContact::friction(const Positions& q) {
+    return shared_.friction().value(surface(q));
 }
 
 } // namespace plisse

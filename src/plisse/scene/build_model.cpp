@@ -9,6 +9,7 @@
 #include <plisse/energy/rest_triangles.h>
 #include <plisse/mesh/connectivity.h>
 #include <plisse/mesh/intersecting_surfaces.h>
+#include <plisse/scene/contact_settings.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
 #include <plisse/scene/select_vertices.h>
@@ -34,7 +35,7 @@ public:
         for (std::size_t i = 0; i < scene_.loads.size(); ++i)
             add_load(scene_.loads[i], fmt::format("/loads/{}", i));
         model_.gravity = scene_.gravity;
-        set_contact();
+        model_.contact = contact_settings(scene_);
         model_.hierarchy = scene_.hierarchy;
         model_.solve = scene_.solve;
         expect_no_flood_of_faces();
@@ -109,23 +110,6 @@ private:
         std::tie(obstacle.vertices, obstacle.faces) = append(mesh, mesh.positions);
         obstacle.motion = motion_track(spec.motion);
         obstacle.progressive = spec.progressive;
-    }
-
-    void set_contact() {
-        const ContactSpec& spec = scene_.contact;
-        model_.contact = {spec.distance, spec.thickness, spec.self, spec.friction, spec.friction_velocity, {}};
-        for (const ContactPairSpec& pair : spec.pairs)
-            model_.contact.pairs.push_back({part_number(pair.a), part_number(pair.b), pair.friction});
-    }
-
-    /// Of a body, or of an obstacle after the bodies.
-    int part_number(const std::string& name) const {
-        const auto bodies = static_cast<int>(model_.bodies.size());
-        if (const int body = body_number(name); body < bodies)
-            return body;
-        const auto found = std::find_if(model_.obstacles.begin(), model_.obstacles.end(),
-                                        [&](const Obstacle& obstacle) { return obstacle.name == name; });
-        return bodies + static_cast<int>(found - model_.obstacles.begin());
     }
 
     int body_number(const std::string& name) const {

@@ -8,6 +8,7 @@
 
 #include <plisse/base/error.h>
 #include <plisse/mesh/intersecting_surfaces.h>
+#include <plisse/scene/contact_settings.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
 #include <plisse/scene/select_vertices.h>
@@ -32,12 +33,6 @@ void expect_known_to_rmtr(const Scene& scene) {
     };
     if (scene.bodies.size() != 1)
         refuse("/bodies", "more than one body is not supported by", "give one, or another method");
-    for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
-        if (!scene.obstacles[o].motion.empty())
-            refuse(fmt::format("/obstacles/{}/motion", o), "moving obstacles are not supported by",
-                   "leave it out, or give another method");
-    if (scene.contact.friction != 0 || !scene.contact.pairs.empty())
-        refuse("/contact/friction", "friction is not supported by", "give 0, or another method");
     if (scene.contact.thickness != 0)
         refuse("/contact/thickness", "a contact thickness is not supported by", "give 0, or another method");
     for (std::size_t h = 0; h < scene.handles.size(); ++h)
@@ -178,6 +173,7 @@ void add_obstacles(const Scene& scene, SubdivisionModel& model, Context& context
         append_mesh(model.obstacles, mesh);
         model.obstacle_of_vertex.resize(at(model.obstacles.vertex_count()), static_cast<int>(o));
         model.obstacle_names.push_back(spec.name);
+        model.obstacle_motions.push_back(motion_track(spec.motion));
     }
 }
 
@@ -185,6 +181,7 @@ void add_obstacles(const Scene& scene, SubdivisionModel& model, Context& context
 void expect_no_intersections(const Scene& scene, const SubdivisionModel& model) {
     TriangleMesh all = model.surface;
     append_mesh(all, model.obstacles);
+    all.positions.rightCols(model.obstacles.vertex_count()) = model.obstacles_at(0);
     std::vector<int> part(all.faces.size(), 0);
     const auto cloth_faces = static_cast<int>(model.surface.faces.size());
     for (std::size_t f = 0; f < model.obstacles.faces.size(); ++f)
@@ -213,7 +210,7 @@ SubdivisionModel build_subdivision_model(const Scene& scene, Context& context) {
     model.surface = limit_surface(model.levels, model.levels.level_count() - 1);
     model.material = body.material;
     model.warp = body.warp;
-    model.contact = {scene.contact.distance, scene.contact.thickness, scene.contact.self, 0, 1, {}};
+    model.contact = contact_settings(scene);
     add_obstacles(scene, model, context);
     expect_no_intersections(scene, model);
     const BoundarySelector selector(scene, model.levels, model.surface);
