@@ -101,20 +101,24 @@ TEST(Multiscale, HandlesCarryTheWeight) {
 }
 
 TEST(Multiscale, ClothLiesOnTheGroundWithoutTouchingIt) {
-    SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
-    model.contact.self = true;
-    model.contact.distance = 4e-3;
-    model.solve.rmtr.penalty = 1e6;
-    add_ground(model, -0.01);
-    Context context;
-    Witness witness;
-    const RunResult result = run_multiscale(model, {}, witness, context);
-    EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
-    EXPECT_EQ(witness.intersections, 0);
-    EXPECT_GT(result.report.levels.front().energy.contact, 0);
-    EXPECT_GT(result.report.levels.front().min_gap, 0);
-    EXPECT_GT(height_of_middle(model, result.positions), -0.01);
-    EXPECT_LT(result.report.levels.front().residual, 1e-5);
+    for (const double thickness : {0.0, 3e-3}) {
+        SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, anywhere);
+        model.contact.self = true;
+        model.contact.distance = 4e-3;
+        model.contact.thickness = thickness;
+        model.solve.rmtr.penalty = 1e6;
+        add_ground(model, -0.01);
+        Context context;
+        Witness witness;
+        const RunResult result = run_multiscale(model, {}, witness, context);
+        EXPECT_EQ(result.report.status, RunStatus::converged) << result.report.message;
+        EXPECT_EQ(witness.intersections, 0);
+        EXPECT_GT(result.report.levels.front().energy.contact, 0);
+        EXPECT_GT(result.report.levels.front().min_gap, 0);
+        EXPECT_GT(height_of_middle(model, result.positions), -0.01 + thickness);
+        EXPECT_LT(height_of_middle(model, result.positions), -0.01 + thickness + 4e-3);
+        EXPECT_LT(result.report.levels.front().residual, 1e-5);
+    }
 }
 
 /// A loose sheet on a slope, of which gravity's direction makes one.

@@ -13,6 +13,16 @@ TriangleMesh limit_surface(const SubdivisionLevels& levels, int level) {
     return surface;
 }
 
+std::vector<Vec3> SubdivisionModel::warp_on(int level) const {
+    if (warp.size() == 1)
+        return warp;
+    const std::size_t parts = std::size_t{1} << (2 * level); // of each face of level 0, which are in its order
+    std::vector<Vec3> directions;
+    for (const Vec3& direction : warp)
+        directions.insert(directions.end(), parts, direction);
+    return directions;
+}
+
 Positions SubdivisionModel::obstacles_at(double t) const {
     Positions moved = obstacles.positions;
     for (int v = 0; v < obstacles.vertex_count(); ++v) {

@@ -28,7 +28,8 @@ struct SubdivisionModel {
     SubdivisionLevels levels; ///< of the rest shape
     TriangleMesh surface;     ///< the finest level's limit points at rest, two triangles for every domain face
     Material material;
-    Vec3 warp = Vec3::UnitX(); ///< direction of the warp at rest; on each face, its tangent part
+    /// Directions of the warp at rest, one for all faces or one for each of level 0; on each face, its tangent part.
+    std::vector<Vec3> warp{Vec3::UnitX()};
     std::vector<BoundaryHandle> handles;
     TriangleMesh obstacles;              ///< all of them in one mesh, m, before their motion
     std::vector<int> obstacle_of_vertex; ///< number of the obstacle that each vertex belongs to, ascending
@@ -38,6 +39,8 @@ struct SubdivisionModel {
     Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
     SolveSettings solve;
 
+    /// The same on a level, whose faces take after those that they are parts of.
+    std::vector<Vec3> warp_on(int level) const;
     /// Where scripts have the obstacles, m.
     Positions obstacles_at(double t) const;
 };

@@ -121,9 +121,9 @@ SubdivisionProblem::SubdivisionProblem(const SubdivisionModel& model, int level,
                                        Context& context, SurfaceContact* contact, const VertexWeights& to_surface)
     : model_(model), held_(std::move(held)), penalty_(penalty), context_(context),
       basis_(model.levels.surface_basis(level, quadrature_side)),
-      shell_(basis_, model.levels.rest(level), section_of(model), std::vector<Vec3>{model.warp}),
-      mass_(mass_of(model, level)), inertia_(mass_, model.levels.rest(level)),
-      boundary_(held_.samples, penalty, model.levels.rest(level)), gravity_(Positions::Zero(3, mass_.cols())),
+      shell_(basis_, model.levels.rest(level), section_of(model), model.warp_on(level)), mass_(mass_of(model, level)),
+      inertia_(mass_, model.levels.rest(level)), boundary_(held_.samples, penalty, model.levels.rest(level)),
+      gravity_(Positions::Zero(3, mass_.cols())),
       contact_(contact ? std::make_unique<LevelContact>(*contact, to_surface) : nullptr),
       no_targets_(VecX::Zero(3 * mass_.cols())) {
     std::set<Edge> pairs;

@@ -8,6 +8,7 @@
 
 #include <plisse/base/error.h>
 #include <plisse/mesh/intersecting_surfaces.h>
+#include <plisse/model/surface_contact.h>
 #include <plisse/scene/contact_settings.h>
 #include <plisse/scene/load_part.h>
 #include <plisse/scene/motion_track.h>
@@ -33,8 +34,6 @@ void expect_known_to_rmtr(const Scene& scene) {
     };
     if (scene.bodies.size() != 1)
         refuse("/bodies", "more than one body is not supported by", "give one, or another method");
-    if (scene.contact.thickness != 0)
-        refuse("/contact/thickness", "a contact thickness is not supported by", "give 0, or another method");
     for (std::size_t h = 0; h < scene.handles.size(); ++h)
         if (scene.handles[h].axes != std::array{true, true, true})
             refuse(fmt::format("/handles/{}/axes", h), "handles of some axes are not supported by",
@@ -76,6 +75,15 @@ SubdivisionLevels subdivided(const Scene& scene) {
     } catch (const InputError& error) {
         throw scene.error_at(pointer, error);
     }
+}
+
+std::vector<Vec3> warp_directions(const Scene& scene, int face_count) {
+    const std::vector<Vec3>& directions = scene.bodies.front().warp.directions;
+    if (directions.size() != 1 && std::ssize(directions) != face_count)
+        throw scene.error_at("/bodies/0/warp",
+                             fmt::format("{} directions for a mesh of {} faces", directions.size(), face_count),
+                             "give one for all, or one for each face");
+    return directions;
 }
 
 /// Turns selections into pieces of the finest level's boundary.
@@ -199,6 +207,16 @@ void expect_no_intersections(const Scene& scene, const SubdivisionModel& model) 
         all.positions, all.faces, pairs, part);
 }
 
+/// And of what contact thickness asks for: within one body that is never more than it is apart at rest.
+void expect_outside_thickness(const Scene& scene, const SubdivisionModel& model, Context& context) {
+    if (model.contact.thickness == 0)
+        return;
+    SurfaceContact contact(model, context);
+    if (contact.contact().least_thickness_share(contact.with_obstacles(model.surface.positions)) < 1)
+        throw scene.error_at("/contact/thickness", "the cloth begins nearer to an obstacle than this",
+                             "move it further away, or give less");
+}
+
 } // namespace
 
 SubdivisionModel build_subdivision_model(const Scene& scene, Context& context) {
@@ -209,10 +227,11 @@ SubdivisionModel build_subdivision_model(const Scene& scene, Context& context) {
     model.body = body.name;
     model.surface = limit_surface(model.levels, model.levels.level_count() - 1);
     model.material = body.material;
-    model.warp = body.warp;
+    model.warp = warp_directions(scene, model.levels.mesh(0).domain_face_count);
     model.contact = contact_settings(scene);
     add_obstacles(scene, model, context);
     expect_no_intersections(scene, model);
+    expect_outside_thickness(scene, model, context);
     const BoundarySelector selector(scene, model.levels, model.surface);
     for (std::size_t i = 0; i < scene.handles.size(); ++i) {
         const HandleSpec& spec = scene.handles[i];

@@ -56,6 +56,9 @@ public:
     static Json write(const LoopSelection& selection) { return selection.loop; }
     static Json write(const MeshSpec& mesh) { return mesh.is_file() ? Json(mesh.file) : write(mesh.generator); }
     static Json write(const RestSpec& rest);
+    static Json write(const WarpSpec& warp) {
+        return warp.directions.size() == 1 ? write(warp.directions.front()) : write(warp.directions);
+    }
 
     template <typename Value>
     static Json write(const std::optional<Value>& value) {

@@ -31,6 +31,7 @@ struct ValueReader {
     static void read(const JsonCursor& at, MeshSpec& mesh, const Limits&);
     static void read(const JsonCursor& at, Material& material, const Limits&);
     static void read(const JsonCursor& at, RestSpec& rest, const Limits&);
+    static void read(const JsonCursor& at, WarpSpec& warp, const Limits&);
     static void read(const JsonCursor& at, BoxSelection& box, const Limits&);
     static void read(const JsonCursor& at, SphereSelection& sphere, const Limits&);
     static void read(const JsonCursor& at, VertexSelection& selection, const Limits&);
@@ -239,6 +240,14 @@ void ValueReader::read(const JsonCursor& at, RestSpec& rest, const Limits& limit
         at.fail(fmt::format("\"{}\" is not a rest shape", name),
                 "give \"as-given\", \"flat-angles\" or {\"mesh\": ...}");
     rest.kind = name == "as-given" ? RestSpec::Kind::as_given : RestSpec::Kind::flat_angles;
+}
+
+void ValueReader::read(const JsonCursor& at, WarpSpec& warp, const Limits& limits) {
+    const bool is_list = at.is(Kind::array) && !at.value().items.empty() && at.item(0).is(Kind::array);
+    if (is_list)
+        read(at, warp.directions, limits);
+    else
+        warp.directions = {at.vector3(limits)};
 }
 
 void ValueReader::read(const JsonCursor& at, BoxSelection& box, const Limits&) {

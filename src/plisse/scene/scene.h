@@ -36,6 +36,11 @@ struct RestSpec {
     MeshSpec mesh; ///< of the same connectivity, for Kind::mesh
 };
 
+/// Where the warp of an orthotropic cloth runs, after the transform.
+struct WarpSpec {
+    std::vector<Vec3> directions{Vec3::UnitX()}; ///< one for all faces, or one a face
+};
+
 struct BodySpec {
     std::string name;
     MeshSpec mesh;
@@ -44,7 +49,7 @@ struct BodySpec {
     Track<double> pressure{0.0};
     RestSpec rest;
     std::optional<MeshSpec> start;
-    Vec3 warp = Vec3::UnitX(); ///< direction of an orthotropic cloth's warp, after the transform
+    WarpSpec warp;
 };
 
 /// A key of a scripted motion; a field left out keeps its last value.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -234,9 +235,10 @@ void describe(Visitor& v, BodySpec& b) {
             "the shape free of stress: as-given, flat-angles (lengths as given, no rest curvature; where more than two "
             "faces meet angles as given), or {\"mesh\": ...} of the same connectivity");
     v.field("warp", b.warp,
-            "by the method rmtr, the direction of an orthotropic cloth's warp where the body is at rest; on each face, "
-            "its part along the face");
-    v.check(b.warp.norm() > 0, "warp", "it has no direction", "give a vector that is not zero");
+            "by the method rmtr, the direction of an orthotropic cloth's warp where the body is at rest: one for all, "
+            "or a list of one for each face of the mesh; on each face, its part along the face");
+    v.check(std::all_of(b.warp.directions.begin(), b.warp.directions.end(), [](const Vec3& d) { return d.norm() > 0; }),
+            "warp", "it has no direction", "give vectors that are not zero");
     v.field("start", b.start, "a mesh of the same connectivity to start from, when not the body's mesh");
 }
 

@@ -75,6 +75,11 @@ struct TypeSchema {
     static Json of(const MeshSpec&, const Limits&);
     static Json of(const Material&, const Limits&);
     static Json of(const RestSpec&, const Limits&);
+    static Json of(const WarpSpec&, const Limits& limits) {
+        Json list = list_schema(of(Vec3(), limits));
+        list["minItems"] = 1;
+        return any_of({of(Vec3(), limits), std::move(list)});
+    }
     static Json of(const MotionSpec&, const Limits&);
 
     static Json of(const Track<Vec3>&, const Limits& limits) { return track(Vec3(), limits); }
