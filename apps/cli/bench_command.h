@@ -4,7 +4,7 @@
 
 namespace plisse {
 
-/// `plisse bench NAME`: progressive and direct runs of one scene, side by side.
+/// `plisse bench NAME`: methods side by side on built-in scenes.
 void add_bench_command(CLI::App& app);
 
 } // namespace plisse

@@ -1,9 +1,8 @@
 #include "bench_scenes.h"
 
 #include <algorithm>
+#include <cassert>
 
-#include <plisse/base/error.h>
-#include <plisse/scene/json_cursor.h>
 #include <plisse/scene/read_scene.h>
 
 namespace plisse {
@@ -65,19 +64,10 @@ constexpr BenchScene scenes[] = {
 
 } // namespace
 
-std::vector<std::string> bench_names() {
-    std::vector<std::string> names;
-    for (const BenchScene& scene : scenes)
-        names.push_back(scene.name);
-    return names;
-}
-
 Scene bench_scene(const std::string& name, bool quick) {
     const auto* found =
         std::find_if(std::begin(scenes), std::end(scenes), [&](const BenchScene& scene) { return scene.name == name; });
-    if (found == std::end(scenes))
-        throw InputError("bench", "there is no benchmark \"" + name + "\"",
-                         "the nearest is `plisse bench " + nearest_name(name, bench_names()) + "`");
+    assert(found != std::end(scenes));
     Scene scene = parse_scene("the benchmark " + name, found->text, {});
     const BenchSize& size = quick ? found->quick : found->full;
     scene.bodies.front().mesh.generator.edge_length = size.edge_length;

@@ -54,6 +54,8 @@ TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
     expect_unusable({"run", "scene.json", "-o", "x", "--progress", "loud"}, "--progress");
     expect_unusable({"studio"}, "not supported in this version");
     expect_unusable({"bench", "cam"}, "plisse bench can");
+    expect_unusable({"bench", "can", "--levels", "2"}, "rmtr");
+    expect_unusable({"bench", "rmtr", "--scenario", "tent"}, "--scenario");
     expect_unusable({"export", "x", "--format", "usd"}, "not supported in this version");
 }
 
@@ -67,6 +69,28 @@ TEST_F(Cli, AnIntersectingStartIsRefusedWithItsPlacesAndShown) {
     EXPECT_FALSE(fs::exists(at("out")));
     const Outcome check = run({"check", at("out_intersections.ply"), "--json"});
     EXPECT_GT(Json::parse(check.out)["intersecting_face_pairs"], 0);
+}
+
+TEST_F(Cli, BenchRmtrPrintsThePapersTablesBesideOurs) {
+    const Outcome outcome =
+        run({"bench", "rmtr", "--quick", "--levels", "2", "--scenario", "trampoline", "--time-limit", "10", "--json",
+             at("bench.json"), "--plot", at("bench.svg"), "--threads", "1"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* part : {"Table 3", "(29426)", "Table 4", "(633)", "Tables 5 to 7", "Table 8", "Figure 9",
+                             "Figure 10", "rmtr is faster"})
+        EXPECT_NE(outcome.out.find(part), std::string::npos) << part << outcome.out;
+    const Json json = json_of("bench.json");
+    EXPECT_GT(json["ratios"]["trampoline_363_memory"], 0.3);
+    for (const Json& contestant : json["runs"]) {
+        EXPECT_GT(contestant["peak_memory_bytes"], 1e6);
+        EXPECT_TRUE(contestant["converged"] || contestant["way"] == "rmtr as published") << contestant;
+    }
+    EXPECT_NEAR(json["conditions"][1]["condition"].get<double>() / 1e8, 1, 0.3); // RMTR.md: 0.95e8 at 363 unknowns
+    for (const Json& step : json["largest_steps"])
+        if (step["way"] == "rmtr" || step["way"] == "trust region") {
+            EXPECT_EQ(step["time_step"], 1);
+        }
+    EXPECT_EQ(read_text(folder_.path() / "bench.svg").rfind("<svg", 0), 0u);
 }
 
 TEST_F(Cli, HelpAndVersionEndInZero) {

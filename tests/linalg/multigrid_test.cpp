@@ -157,6 +157,17 @@ TEST(BlockGaussSeidel, IsTheProductOfItsTriangles) {
     EXPECT_LT((sweep.apply(b) - expected).norm(), 1e-10 * expected.norm());
 }
 
+TEST(Multigrid, CountsItsProducts) {
+    const Hierarchy hierarchy(3, 2);
+    MultigridOptions options;
+    // A level: two sweeps at one product each, and a residual before each but the first and for the coarser level.
+    EXPECT_DOUBLE_EQ(Multigrid(hierarchy.pointers, options).products(), 4 + (4 + 10.0 / 4) / 4);
+    options.steps = 2;
+    EXPECT_DOUBLE_EQ(Multigrid(hierarchy.pointers, options).products(), 8 + (8 + 10.0 / 4) / 4);
+    options.smoother = Smoother::block_jacobi;
+    EXPECT_DOUBLE_EQ(Multigrid({}, options).products(), 10);
+}
+
 TEST(Multigrid, IsADirectSolverOnOneLevel) {
     const NewtonSystem system = spline::plate(4, 5);
     Multigrid cycle({}, {});

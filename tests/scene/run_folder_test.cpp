@@ -42,6 +42,10 @@ RunReport sample_report() {
     level.estimated_turn = 0.1 / 3;
     level.energy = {0.1, 0.3, 0.2, 0, -1e-17, 0.7};
     level.reactions = {{"left", Vec3(0, 0.1 / 7, 0), Vec3::Ones()}};
+    level.work.resize(2);
+    level.work[0].quadratic_solves = 8;
+    level.work[1].assemblies = 3;
+    level.work[1].quadratic_products = 10.0 / 3;
     level.seconds[Phase::ccd] = 0.1 + 0.2;
     level.total_seconds = 2.0 / 3;
     report.levels = {level};
@@ -108,6 +112,10 @@ TEST(ReportJson, HasTheContractsKeysAndReadsBackToTheBit) {
     EXPECT_EQ(json["status"], "running");
     EXPECT_TRUE(json["levels"][0]["min_gap"].is_null()) << "infinity";
     EXPECT_EQ(json["reactions"]["left"]["force"][1], 1.0 / 7);
+
+    EXPECT_EQ(json["levels"][0]["work"]["assembly_units"], 3);
+    EXPECT_EQ(json["levels"][0]["work"]["quadratic_units"], 2);
+    EXPECT_EQ(json["levels"][0]["work"]["levels"].size(), 2u);
 
     const RunReport back = report_from_json(json);
     EXPECT_EQ(report_to_json(back, {}), report_to_json(report, {}));

@@ -196,6 +196,7 @@ class Spoiled : public Preconditioner {
 public:
     void set_matrix(const NewtonSystem&) override {}
     VecX apply(const VecX& residual) const override { return -residual; }
+    double products() const override { return 3; }
 };
 
 TEST(QuadraticStep, GoesDownWithoutAPreconditionerThatShowsNoWay) {

@@ -154,15 +154,24 @@ TEST(Rmtr, CountsWorkInUnitsOfTheFinestLevel) {
     int full_cycles = 0;
     const RmtrSummary summary =
         minimize_by_rmtr(hierarchy.levels, hierarchy.between, x, options, context, [&](const RmtrCycle& cycle) {
-            quadratic_units += cycle.quadratic_units;
-            double expected = 0;
-            for (std::size_t l = 0; l < cycle.levels.size(); ++l)
-                expected += std::pow(0.25, 2 - static_cast<int>(l)) * cycle.levels[l].quadratic_solves;
-            EXPECT_DOUBLE_EQ(cycle.quadratic_units, expected);
-            full_cycles += std::abs(cycle.quadratic_units - 2.5625) < 1e-12; // 2 + 2/4 + 1/16
+            const double units = plisse::quadratic_units(cycle.levels);
+            quadratic_units += units;
+            double solves = 0, products = 0;
+            for (std::size_t l = 0; l < cycle.levels.size(); ++l) {
+                const double share = std::pow(0.25, 2 - static_cast<int>(l));
+                solves += share * cycle.levels[l].quadratic_solves;
+                products += share * cycle.levels[l].quadratic_products;
+                // Ten steps of conjugate gradients and two products for the plane of a step at the boundary.
+                EXPECT_LE(cycle.levels[l].quadratic_products, 12.0 * cycle.levels[l].quadratic_solves);
+                EXPECT_GE(cycle.levels[l].quadratic_products, cycle.levels[l].quadratic_iterations);
+            }
+            EXPECT_DOUBLE_EQ(units, solves);
+            EXPECT_DOUBLE_EQ(product_units(cycle.levels), products / 10);
+            full_cycles += std::abs(units - 2.5625) < 1e-12; // 2 + 2/4 + 1/16
         });
-    EXPECT_NEAR(summary.quadratic_units, quadratic_units, 1e-9);
-    EXPECT_LE(summary.assembly_units, summary.quadratic_units);
+    EXPECT_NEAR(plisse::quadratic_units(summary.levels), quadratic_units, 1e-9);
+    EXPECT_LE(assembly_units(summary.levels), quadratic_units);
+    EXPECT_EQ(summary.levels.front().quadratic_products, 10.0 * summary.levels.front().quadratic_solves); // by a factor
     EXPECT_GE(full_cycles, summary.cycles / 2);
     EXPECT_GE(summary.cycles, 4);
 }

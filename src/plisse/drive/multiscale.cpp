@@ -141,6 +141,9 @@ bool MultiscaleDriver::solve(const SurfaceStep& step, const char* phase, double 
                               iteration.gradient_norm, 0, fraction});
     });
     report.newton_iterations += outcome.iterations;
+    report.work.resize(outcome.work.size());
+    for (std::size_t l = 0; l < outcome.work.size(); ++l)
+        report.work[l] += outcome.work[l];
     if (outcome.end == TrustRegionEnd::interrupted) {
         x_ = before;
         return false;

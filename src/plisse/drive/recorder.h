@@ -9,7 +9,7 @@
 #include <plisse/decimate/hierarchy.h>
 #include <plisse/drive/coarseness.h>
 #include <plisse/drive/preview_distance.h>
-#include <plisse/solve/objective.h>
+#include <plisse/solve/rmtr.h>
 
 namespace plisse {
 
@@ -61,6 +61,7 @@ struct LevelReport {
     double estimated_turn = 0; ///< rad, from face to face: what was to be expected before the run
     EnergyParts energy;
     std::vector<Reaction> reactions; ///< of every handle and obstacle, at the level's last state
+    std::vector<RmtrLevelWork> work; ///< of the method rmtr, on the coarsest level first; of others empty
     PhaseTimes seconds;
     double total_seconds = 0;
 };

@@ -109,6 +109,13 @@ TrustRegionEnd end_of(NewtonEnd end) {
     return TrustRegionEnd::stalled;
 }
 
+RmtrLevelWork work_of_newton_steps(int steps) {
+    RmtrLevelWork work;
+    work.visits = work.accepted = work.assemblies = work.quadratic_solves = work.quadratic_iterations = steps;
+    work.quadratic_products = steps * products_of_direct_solve;
+    return work;
+}
+
 double gradient_norm(Objective& objective, const VecX& x) {
     VecX gradient;
     objective.gradient(x, gradient);
@@ -125,8 +132,6 @@ void SurfaceOutcome::go_on(const SurfaceOutcome& part) {
     work.resize(std::max(work.size(), part.work.size()));
     for (std::size_t l = 0; l < part.work.size(); ++l)
         work[l] += part.work[l];
-    assembly_units += part.assembly_units;
-    quadratic_units += part.quadratic_units;
 }
 
 SurfaceStepper::SurfaceStepper(const SubdivisionModel& model, Context& context)
@@ -270,8 +275,7 @@ SurfaceOutcome SurfaceStepper::by_rmtr(VecX& x, int most_cycles, bool nested, co
         if (observe)
             observe({cycle.cycle, cycle.finest_level, cycle.value, cycle.gradient_norm, cycle.radius});
     });
-    return {summary.end,    summary.message,        summary.cycles,         summary.gradient_norm,
-            summary.levels, summary.assembly_units, summary.quadratic_units};
+    return {summary.end, summary.message, summary.cycles, summary.gradient_norm, summary.levels};
 }
 
 SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, int most, const Observer& observe) {
@@ -285,7 +289,15 @@ SurfaceOutcome SurfaceStepper::by_trust_region(VecX& x, int most, const Observer
                 observe(
                     {iteration.iteration, finest, iteration.value, iteration.gradient_norm, iteration.trial.radius});
         });
-    return {summary.end, summary.message, summary.iterations, summary.gradient_norm, {}};
+    RmtrLevelWork work;
+    work.visits = summary.iterations;
+    work.accepted = summary.accepted;
+    work.rejected = summary.iterations - summary.accepted;
+    work.assemblies = summary.assemblies;
+    work.quadratic_solves = work.quadratic_iterations = summary.quadratic_solves;
+    work.quadratic_products = summary.quadratic_products;
+    work.evaluations = summary.evaluations;
+    return {summary.end, summary.message, summary.iterations, summary.gradient_norm, {work}};
 }
 
 SurfaceOutcome SurfaceStepper::by_line_search(VecX& x, int most, const Observer& observe) {
@@ -299,7 +311,11 @@ SurfaceOutcome SurfaceStepper::by_line_search(VecX& x, int most, const Observer&
             if (observe)
                 observe({iteration.iteration, level, iteration.value, iteration.step_norm, iteration.step_length});
         });
-    return {end_of(summary.end), summary.message, summary.iterations, gradient_norm(finest(), x), {}};
+    return {end_of(summary.end),
+            summary.message,
+            summary.iterations,
+            gradient_norm(finest(), x),
+            {work_of_newton_steps(summary.iterations)}};
 }
 
 SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most, const Observer& observe) {
@@ -326,6 +342,7 @@ SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most, 
         if (observe)
             observe({outcome.iterations, model_.levels.level_count() - 1, finest().value(x), gradient.norm(), factor});
     }
+    outcome.work = {work_of_newton_steps(outcome.iterations)};
     outcome.message = fmt::format("{} after {} steps, with |g| = {:.3g}", in_words(outcome.end), outcome.iterations,
                                   outcome.gradient_norm);
     return outcome;

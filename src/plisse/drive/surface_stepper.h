@@ -23,8 +23,7 @@ struct SurfaceOutcome {
     std::string message; ///< in words
     int iterations = 0;  ///< or cycles, on the finest level
     double gradient_norm = 0;
-    std::vector<RmtrLevelWork> work; ///< per level, of rmtr
-    double assembly_units = 0, quadratic_units = 0;
+    std::vector<RmtrLevelWork> work; ///< per level of rmtr, the coarsest first; one for solvers of the finest alone
 
     /// Adds what a later part of the step did, and ends as it did.
     void go_on(const SurfaceOutcome& part);

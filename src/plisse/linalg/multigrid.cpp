@@ -55,6 +55,13 @@ void Multigrid::set_matrix(const NewtonSystem& matrix) {
         direct_.try_factorize(*coarsest_, 2 * shift);
 }
 
+double Multigrid::products() const {
+    double sum = products_of_direct_solve;
+    for (const Level& level : levels_)
+        sum = sum / 4 + 2 * options_.steps * (1 + level.smoother->products());
+    return sum;
+}
+
 const NewtonSystem& Multigrid::matrix(int level) const {
     return level == 0 ? *coarsest_ : *levels_[static_cast<std::size_t>(level) - 1].matrix;
 }

@@ -42,6 +42,8 @@ public:
     Multigrid(std::span<const ScalarTransfer* const> prolongations, const MultigridOptions& options);
     void set_matrix(const NewtonSystem& matrix) override;
     VecX apply(const VecX& residual) const override { return cycle(levels_.size(), residual); }
+    /// A level counts a quarter of the next finer one.
+    double products() const override;
 
     /// H on a level: 0 the coarsest, the number of prolongations the matrix that was set.
     const NewtonSystem& matrix(int level) const;

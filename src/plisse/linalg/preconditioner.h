@@ -6,6 +6,10 @@
 
 namespace plisse {
 
+/// How costs in products with H count a solve by a factor of it: as the ten products of a smoothing step, like
+/// Kopanicakova, Krause and Tamstorf (2019, section 7.4.2), who call this generous to direct solvers.
+constexpr double products_of_direct_solve = 10;
+
 /// An approximate inverse of H: symmetric and positive definite whether or not H is, so that conjugate gradients may
 /// use it. Works on the rows of the system.
 class Preconditioner {
@@ -14,6 +18,8 @@ public:
     /// The matrix is kept by reference.
     virtual void set_matrix(const NewtonSystem& matrix) = 0;
     virtual VecX apply(const VecX& residual) const = 0;
+    /// What apply costs, in products with H. Work on diagonal blocks is not counted, nor is set_matrix.
+    virtual double products() const = 0;
 };
 
 /// The diagonal blocks of H made definite: eigenvalues are taken absolutely, and not below a tiny share of the block's
@@ -37,6 +43,7 @@ class BlockJacobi : public Preconditioner {
 public:
     void set_matrix(const NewtonSystem& matrix) override { diagonal_.set_matrix(matrix); }
     VecX apply(const VecX& residual) const override { return diagonal_.solve(residual); }
+    double products() const override { return 0; }
 
 private:
     DiagonalBlocks diagonal_;
@@ -49,6 +56,7 @@ class BlockGaussSeidel : public Preconditioner {
 public:
     void set_matrix(const NewtonSystem& matrix) override;
     VecX apply(const VecX& residual) const override;
+    double products() const override { return 1; } // each sweep takes one half of H
 
 private:
     const NewtonSystem* matrix_ = nullptr;
@@ -62,6 +70,7 @@ public:
     explicit Chebyshev(int degree) : degree_(degree) {}
     void set_matrix(const NewtonSystem& matrix) override;
     VecX apply(const VecX& residual) const override;
+    double products() const override { return degree_ - 1; }
 
 private:
     int degree_;

@@ -57,34 +57,75 @@ PhaseTimes seconds_from(const Json& json) {
     return times;
 }
 
+/// With its totals in the work units of the finest level.
+Json work_json(const std::vector<RmtrLevelWork>& work) {
+    Json levels = Json::array();
+    for (const RmtrLevelWork& level : work)
+        levels.push_back({{"visits", level.visits},
+                          {"accepted", level.accepted},
+                          {"rejected", level.rejected},
+                          {"corrections_accepted", level.corrections_accepted},
+                          {"corrections_rejected", level.corrections_rejected},
+                          {"assemblies", level.assemblies},
+                          {"quadratic_solves", level.quadratic_solves},
+                          {"quadratic_iterations", level.quadratic_iterations},
+                          {"quadratic_products", level.quadratic_products},
+                          {"evaluations", level.evaluations}});
+    return {{"assembly_units", assembly_units(work)},
+            {"quadratic_units", quadratic_units(work)},
+            {"product_units", product_units(work)},
+            {"levels", levels}};
+}
+
+std::vector<RmtrLevelWork> work_from(const Json& json) {
+    std::vector<RmtrLevelWork> work;
+    for (const Json& level : json.at("levels")) {
+        RmtrLevelWork& of_level = work.emplace_back();
+        level.at("visits").get_to(of_level.visits);
+        level.at("accepted").get_to(of_level.accepted);
+        level.at("rejected").get_to(of_level.rejected);
+        level.at("corrections_accepted").get_to(of_level.corrections_accepted);
+        level.at("corrections_rejected").get_to(of_level.corrections_rejected);
+        level.at("assemblies").get_to(of_level.assemblies);
+        level.at("quadratic_solves").get_to(of_level.quadratic_solves);
+        level.at("quadratic_iterations").get_to(of_level.quadratic_iterations);
+        level.at("quadratic_products").get_to(of_level.quadratic_products);
+        level.at("evaluations").get_to(of_level.evaluations);
+    }
+    return work;
+}
+
 Json level_json(const LevelReport& level) {
-    return {{"level", level.level},
-            {"vertices", level.vertices},
-            {"faces", level.faces},
-            {"steps", level.steps},
-            {"newton_iterations", level.newton_iterations},
-            {"equilibrium", level.equilibrium},
-            {"min_gap", finite_or_null(level.min_gap)},
-            {"max_stretch", finite_or_null(level.max_stretch)},
-            {"residual", finite_or_null(level.residual)},
-            {"to_final",
-             {{"mean", finite_or_null(level.to_final.mean)}, {"largest", finite_or_null(level.to_final.largest)}}},
-            {"too_coarse",
-             {{"share", level.too_coarse.share},
-              {"worst", finite_or_null(level.too_coarse.worst)},
-              {"turn", finite_or_null(level.too_coarse.turn)},
-              {"edge", level.too_coarse.edge},
-              {"place", vector_json(level.too_coarse.place)},
-              {"estimated_turn", finite_or_null(level.estimated_turn)}}},
-            {"energy",
-             {{"elastic", level.energy.elastic},
-              {"strain_limit", level.energy.strain_limit},
-              {"contact", level.energy.contact},
-              {"friction", level.energy.friction},
-              {"gravity", level.energy.gravity},
-              {"loads", level.energy.loads}}},
-            {"reactions", reactions_json(level.reactions)},
-            {"seconds", seconds_json(level.seconds, level.total_seconds)}};
+    Json json = {{"level", level.level},
+                 {"vertices", level.vertices},
+                 {"faces", level.faces},
+                 {"steps", level.steps},
+                 {"newton_iterations", level.newton_iterations},
+                 {"equilibrium", level.equilibrium},
+                 {"min_gap", finite_or_null(level.min_gap)},
+                 {"max_stretch", finite_or_null(level.max_stretch)},
+                 {"residual", finite_or_null(level.residual)},
+                 {"to_final",
+                  {{"mean", finite_or_null(level.to_final.mean)}, {"largest", finite_or_null(level.to_final.largest)}}},
+                 {"too_coarse",
+                  {{"share", level.too_coarse.share},
+                   {"worst", finite_or_null(level.too_coarse.worst)},
+                   {"turn", finite_or_null(level.too_coarse.turn)},
+                   {"edge", level.too_coarse.edge},
+                   {"place", vector_json(level.too_coarse.place)},
+                   {"estimated_turn", finite_or_null(level.estimated_turn)}}},
+                 {"energy",
+                  {{"elastic", level.energy.elastic},
+                   {"strain_limit", level.energy.strain_limit},
+                   {"contact", level.energy.contact},
+                   {"friction", level.energy.friction},
+                   {"gravity", level.energy.gravity},
+                   {"loads", level.energy.loads}}},
+                 {"reactions", reactions_json(level.reactions)},
+                 {"seconds", seconds_json(level.seconds, level.total_seconds)}};
+    if (!level.work.empty())
+        json["work"] = work_json(level.work);
+    return json;
 }
 
 LevelReport level_from(const Json& json) {
@@ -115,6 +156,8 @@ LevelReport level_from(const Json& json) {
     level.reactions = reactions_from(json.at("reactions"));
     level.seconds = seconds_from(json.at("seconds"));
     json.at("seconds").at("total").get_to(level.total_seconds);
+    if (json.contains("work"))
+        level.work = work_from(json.at("work"));
     return level;
 }
 

@@ -74,6 +74,7 @@ QuadraticStep plane_step(const NewtonSystem& matrix, const VecX& gradient, const
     best.norm = best.s.norm();
     best.on_boundary = best.norm >= radius * (1 - 1e-9);
     best.iterations = step.iterations + 2;
+    best.products = step.products + 2;
     return best;
 }
 
@@ -92,8 +93,12 @@ void ConjugateGradientStep::set_matrix(const NewtonSystem& matrix) {
 QuadraticStep ConjugateGradientStep::minimize(const VecX& gradient, double radius) {
     QuadraticStep step = iterate(gradient, radius, preconditioner_.get());
     // Rounding may spoil the preconditioner of a strongly indefinite H, which then shows no way down.
-    if (preconditioner_ && !(step.decrease() > 0) && !gradient.isZero(0))
-        return iterate(gradient, radius, nullptr);
+    if (preconditioner_ && !(step.decrease() > 0) && !gradient.isZero(0)) {
+        const double spoilt = step.products;
+        step = iterate(gradient, radius, nullptr);
+        step.products += spoilt;
+        return step;
+    }
     if (step.on_boundary && preconditioner_ && options_.norm == RadiusNorm::euclidean)
         return plane_step(*matrix_, gradient, step, radius);
     return step;
@@ -104,7 +109,9 @@ QuadraticStep ConjugateGradientStep::iterate(const VecX& gradient, double radius
     const auto preconditioned = [&](const VecX& residual) {
         return preconditioner ? preconditioner->apply(residual) : residual;
     };
+    const double products_to_precondition = preconditioner ? preconditioner->products() : 0;
     QuadraticStep step;
+    step.products = products_to_precondition;
     step.s = VecX::Zero(gradient.size());
     VecX product_of_s = step.s, residual = gradient, z = preconditioned(residual), d = -z;
     double energy = residual.dot(z);
@@ -115,6 +122,7 @@ QuadraticStep ConjugateGradientStep::iterate(const VecX& gradient, double radius
     while (energy > enough && step.iterations < options_.max_iterations) {
         const VecX product = matrix_->multiply(d);
         ++step.iterations;
+        step.products += 1 + products_to_precondition;
         if (measured)
             lengths.measure(step.s, d);
         const double curvature = d.dot(product);

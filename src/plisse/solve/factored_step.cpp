@@ -95,6 +95,7 @@ QuadraticStep DoglegStep::minimize(const VecX& gradient, double radius) {
     if (!(step.decrease() >= cauchy.decrease()))
         step = cauchy;
     step.iterations = 1;
+    step.products = products_of_direct_solve;
     return step;
 }
 
@@ -107,11 +108,11 @@ void ExactStep::set_matrix(const NewtonSystem& matrix) {
 QuadraticStep ExactStep::minimize(const VecX& gradient, double radius) {
     QuadraticStep step = search(gradient, radius);
     const QuadraticStep cauchy = cauchy_step(*matrix_, gradient, radius);
-    if (step.decrease() >= cauchy.decrease())
-        return step;
     const int iterations = step.iterations;
-    step = cauchy;
+    if (!(step.decrease() >= cauchy.decrease()))
+        step = cauchy;
     step.iterations = iterations;
+    step.products = iterations * products_of_direct_solve;
     return step;
 }
 

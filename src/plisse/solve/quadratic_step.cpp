@@ -52,12 +52,12 @@ BoundarySteps steps_to_boundary(double ss, double sd, double dd, double radius) 
 QuadraticStep cauchy_step(const NewtonSystem& matrix, const VecX& gradient, double radius) {
     const double length = gradient.norm();
     if (length == 0)
-        return {VecX::Zero(gradient.size()), 0, 0, 0, false, 0};
+        return {VecX::Zero(gradient.size()), 0, 0, 0, false, 0, 0};
     const VecX d = -gradient / length;
     const double curvature = d.dot(matrix.multiply(d));
     const bool inside = curvature > 0 && length / curvature < radius;
     const double tau = inside ? length / curvature : radius;
-    return {tau * d, -tau * length, tau * tau * curvature, tau, !inside, 1};
+    return {tau * d, -tau * length, tau * tau * curvature, tau, !inside, 1, 1};
 }
 
 } // namespace plisse

@@ -42,6 +42,7 @@ struct QuadraticStep {
     double norm = 0;          ///< of s in the norm of the radius
     bool on_boundary = false; ///< norm is the radius, to rounding
     int iterations = 0;       ///< factorisations, or products with H
+    double products = 0;      ///< what it cost in products with H, preconditioners' and solves by a factor included
 
     /// m(0) - m(alpha s).
     double decrease(double alpha = 1) const { return -alpha * (slope + 0.5 * alpha * curvature); }

@@ -20,18 +20,37 @@ RmtrLevelWork& RmtrLevelWork::operator+=(const RmtrLevelWork& other) {
     quadratic_solves += other.quadratic_solves;
     quadratic_iterations += other.quadratic_iterations;
     evaluations += other.evaluations;
+    quadratic_products += other.quadratic_products;
     largest_correction = std::max(largest_correction, other.largest_correction);
     return *this;
 }
 
 namespace {
 
-double work_units(const std::vector<RmtrLevelWork>& levels, int RmtrLevelWork::*count) {
+template <typename Number>
+double work_units(std::span<const RmtrLevelWork> levels, Number RmtrLevelWork::*count) {
     double units = 0;
     for (const RmtrLevelWork& level : levels)
         units = units / 4 + level.*count;
     return units;
 }
+
+} // namespace
+
+double assembly_units(std::span<const RmtrLevelWork> levels) {
+    return work_units(levels, &RmtrLevelWork::assemblies);
+}
+
+double quadratic_units(std::span<const RmtrLevelWork> levels) {
+    return work_units(levels, &RmtrLevelWork::quadratic_solves);
+}
+
+double product_units(std::span<const RmtrLevelWork> levels) {
+    constexpr double products_of_unit = 10;
+    return work_units(levels, &RmtrLevelWork::quadratic_products) / products_of_unit;
+}
+
+namespace {
 
 /// The method on a hierarchy. Levels count from the coarsest, 0, to finest().
 class Rmtr {
@@ -249,15 +268,12 @@ private:
             work_[l].assemblies = iterates_[l]->assemblies() - summary.levels[l].assemblies;
             work_[l].quadratic_solves = iterates_[l]->quadratic_solves() - summary.levels[l].quadratic_solves;
             work_[l].evaluations = iterates_[l]->evaluations() - summary.levels[l].evaluations;
+            work_[l].quadratic_products = iterates_[l]->quadratic_products() - summary.levels[l].quadratic_products;
             summary.levels[l] += work_[l];
         }
         const TrustRegionIterate& top = *iterates_[finest()];
-        RmtrCycle cycle{
-            summary.cycles, static_cast<int>(finest()), top.value(), top.gradient_norm(), radius, work_, 0, 0};
-        cycle.assembly_units = work_units(work_, &RmtrLevelWork::assemblies);
-        cycle.quadratic_units = work_units(work_, &RmtrLevelWork::quadratic_solves);
-        summary.assembly_units += cycle.assembly_units;
-        summary.quadratic_units += cycle.quadratic_units;
+        const RmtrCycle cycle{summary.cycles, static_cast<int>(finest()), top.value(), top.gradient_norm(), radius,
+                              work_};
         work_.assign(work_.size(), {});
         if (observe)
             observe(cycle);
@@ -323,8 +339,6 @@ RmtrSummary minimize_by_rmtr(std::span<Objective* const> levels, std::span<const
     summary.nested_cycles = before.nested_cycles;
     for (std::size_t l = 0; l < levels.size(); ++l)
         summary.levels[l] += before.levels[l];
-    summary.assembly_units = work_units(summary.levels, &RmtrLevelWork::assemblies);
-    summary.quadratic_units = work_units(summary.levels, &RmtrLevelWork::quadratic_solves);
     return summary;
 }
 

@@ -89,17 +89,24 @@ struct RmtrLevelWork {
     int accepted = 0, rejected = 0;                         ///< smoothing steps
     int corrections_accepted = 0, corrections_rejected = 0; ///< from the next coarser level
     int assemblies = 0, quadratic_solves = 0, quadratic_iterations = 0, evaluations = 0;
+    double quadratic_products = 0; ///< what the quadratic solves cost, in products with H (see QuadraticStep)
     double largest_correction = 0; ///< of those from the coarser level, as a share of the radius
     RmtrLevelWork& operator+=(const RmtrLevelWork& other);
 };
+
+/// Work units of (7.3), from the coarsest level's work to the finest's: the sum over levels of 4^-(L - l) times the
+/// assemblies of H there, or the quadratic problems solved there, whatever solving one took.
+double assembly_units(std::span<const RmtrLevelWork> levels);
+double quadratic_units(std::span<const RmtrLevelWork> levels);
+/// The same of what quadratic problems took: ten products with H are a unit, as they are in the paper, whose every
+/// solve has that many.
+double product_units(std::span<const RmtrLevelWork> levels);
 
 struct RmtrCycle {
     int cycle = 0;
     int finest_level = 0; ///< of this cycle: below the last one in nested iteration
     double value = 0, gradient_norm = 0, radius = 0;
     std::vector<RmtrLevelWork> levels;
-    /// Equation (7.3): sum over levels of 4^-(L - l) times the count.
-    double assembly_units = 0, quadratic_units = 0;
 };
 
 struct RmtrSummary {
@@ -109,7 +116,6 @@ struct RmtrSummary {
     int cycles = 0;                    ///< on the finest level
     int nested_cycles = 0;             ///< on all coarser ones before
     std::vector<RmtrLevelWork> levels; ///< in all
-    double assembly_units = 0, quadratic_units = 0;
     bool converged() const { return is_converged(end); }
 };
 

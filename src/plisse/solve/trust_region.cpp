@@ -96,6 +96,7 @@ private:
         summary_.evaluations = iterate_.evaluations();
         summary_.assemblies = iterate_.assemblies();
         summary_.quadratic_solves = iterate_.quadratic_solves();
+        summary_.quadratic_products = iterate_.quadratic_products();
         summary_.message = fmt::format("{} after {} iterations, with |g| = {:.3g} and radius {:.3g}", in_words(end),
                                        summary_.iterations, summary_.gradient_norm, summary_.radius);
         return summary_;

@@ -53,6 +53,7 @@ struct TrustRegionSummary {
     double radius = 0; ///< the last
     int iterations = 0, accepted = 0;
     int evaluations = 0, assemblies = 0, quadratic_solves = 0;
+    double quadratic_products = 0; ///< see QuadraticStep
     bool converged() const { return is_converged(end); }
 };
 

@@ -85,6 +85,7 @@ TrialStep TrustRegionIterate::step(double radius) {
         update_matrix();
     const QuadraticStep model = solver_.minimize(system.gather(gradient_), radius);
     ++quadratic_solves_;
+    quadratic_products_ += model.products;
     TrialStep trial;
     trial.radius = radius;
     trial.norm = model.norm;

@@ -72,6 +72,8 @@ public:
     int evaluations() const { return evaluations_; }
     int assemblies() const { return assemblies_; }
     int quadratic_solves() const { return quadratic_solves_; }
+    /// What they cost (see QuadraticStep).
+    double quadratic_products() const { return quadratic_products_; }
 
 private:
     void begin(VecX x0);
@@ -89,6 +91,7 @@ private:
     bool matrix_is_current_ = false;
     bool near_ = false; ///< the last accepted step met no bound
     int evaluations_ = 0, assemblies_ = 0, quadratic_solves_ = 0;
+    double quadratic_products_ = 0;
 };
 
 } // namespace plisse
