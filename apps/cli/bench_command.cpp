@@ -42,11 +42,14 @@ void run_bench(const BenchArguments& arguments) {
     if (bench == benches.end())
         throw InputError("bench", "there is no benchmark \"" + arguments.name + "\"",
                          "the nearest is `plisse bench " + nearest_name(arguments.name, bench_names()) + "`");
-    const bool asks_for_rmtr =
-        !arguments.plot.empty() || !arguments.scenario.empty() || arguments.levels > 0 || arguments.time_limit > 0;
+    const bool asks_for_rmtr = !arguments.plot.empty() || !arguments.scenario.empty() || arguments.first_levels > 1 ||
+                               arguments.levels > 0 || arguments.time_limit > 0;
     if (asks_for_rmtr && bench->run != run_rmtr_bench)
-        throw InputError("bench", "--plot, --scenario, --levels and --time-limit are of the benchmark rmtr",
+        throw InputError("bench",
+                         "--plot, --scenario, --first-levels, --levels and --time-limit are of the benchmark rmtr",
                          "leave them out for \"" + arguments.name + "\"");
+    if (arguments.levels > 0 && arguments.first_levels > arguments.levels)
+        throw InputError("bench", "--first-levels is above --levels", "give no more than --levels");
     bench->run(arguments);
 }
 
@@ -64,6 +67,7 @@ void add_bench_command(CLI::App& app) {
         scenario_names.emplace_back(scenario_name(scenario));
     command->add_option("--scenario", arguments->scenario, "rmtr: runs this one only")
         ->check(CLI::IsMember(scenario_names));
+    command->add_option("--first-levels", arguments->first_levels, "rmtr: the fewest levels")->check(CLI::Range(1, 7));
     command->add_option("--levels", arguments->levels, "rmtr: the most levels, instead of 7, or 3 if quick")
         ->check(CLI::Range(2, 7));
     command->add_option("--time-limit", arguments->time_limit, "rmtr: seconds of a contestant, instead of 600, or 15")

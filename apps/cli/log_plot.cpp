@@ -13,24 +13,38 @@ namespace {
 constexpr double panel_width = 440, panel_height = 330, left = 56, right = 12, top = 30, bottom = 44;
 constexpr double legend_row = 18;
 
-/// Whole decades around values, and where they lie between two ends of the picture.
+/// From the smallest value to the largest, and where they lie between two ends of the picture.
 struct LogAxis {
-    double begin, end;                                                                                     ///< px
-    double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity(); ///< decades
+    double begin, end; ///< px
+    double least = std::numeric_limits<double>::infinity(), most = 0;
 
     void include(double value) {
-        low = std::min(low, std::floor(std::log10(value)));
-        high = std::max(high, std::ceil(std::log10(value)));
+        least = std::min(least, value);
+        most = std::max(most, value);
     }
-    bool is_empty() const { return !(low <= high); }
+    bool is_empty() const { return most == 0; }
     double place(double value) const {
-        return begin + (std::log10(value) - low) / std::max(high - low, 1.0) * (end - begin);
+        constexpr double margin = 0.05; // at either end, of the length between
+        const double share = most > least ? std::log(value / least) / std::log(most / least) : 0.5;
+        return begin + (margin + (1 - 2 * margin) * share) * (end - begin);
+    }
+    bool holds(double value) const {
+        const double at = place(value);
+        return std::min(begin, end) <= at && at <= std::max(begin, end);
+    }
+    /// Decades, and where these are few twice and five times them.
+    std::vector<double> ticks() const {
+        constexpr double few = 2.5; // decades
+        std::vector<double> values;
+        for (double decade = std::floor(std::log10(least)) - 1; decade <= std::log10(most) + 1; ++decade)
+            for (const double factor : {1.0, 2.0, 5.0}) {
+                const double value = factor * std::pow(10, decade);
+                if (holds(value) && (factor == 1 || std::log10(most / least) < few))
+                    values.push_back(value);
+            }
+        return values;
     }
 };
-
-std::string decade_name(double decade) {
-    return fmt::format("{:g}", std::pow(10, decade));
-}
 
 std::string text(double x, double y, const char* anchor, const std::string& words) {
     return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, words);
@@ -66,13 +80,15 @@ std::string panel_drawn(const LogPanel& panel, double x0) {
     if (x.is_empty())
         return svg;
     const std::string grid = "stroke=\"#ddd\"";
-    for (double decade = x.low; decade <= x.high; ++decade) {
-        const double place = x.place(std::pow(10, decade));
-        svg += line(place, y.begin, place, y.end, grid) + text(place, y.begin + 16, "middle", decade_name(decade));
+    for (const double value : x.ticks()) {
+        const double place = x.place(value);
+        svg +=
+            line(place, y.begin, place, y.end, grid) + text(place, y.begin + 16, "middle", fmt::format("{:g}", value));
     }
-    for (double decade = y.low; decade <= y.high; ++decade) {
-        const double place = y.place(std::pow(10, decade));
-        svg += line(x.begin, place, x.end, place, grid) + text(x.begin - 6, place + 4, "end", decade_name(decade));
+    for (const double value : y.ticks()) {
+        const double place = y.place(value);
+        svg +=
+            line(x.begin, place, x.end, place, grid) + text(x.begin - 6, place + 4, "end", fmt::format("{:g}", value));
     }
     svg += text(0.5 * (x.begin + x.end), panel_height - 8, "middle", panel.x_name);
     for (const LogSeries& series : panel.series)

@@ -27,6 +27,10 @@ const SurfaceRun* RmtrResults::find(Scenario scenario, Way way, int levels) cons
     return run == runs.end() ? nullptr : &*run;
 }
 
+bool RmtrResults::has(Scenario scenario) const {
+    return std::any_of(runs.begin(), runs.end(), [&](const SurfaceRun& run) { return run.scenario == scenario; });
+}
+
 int RmtrResults::most_levels() const {
     int most = 0;
     for (const SurfaceRun& run : runs)

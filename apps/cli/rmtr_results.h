@@ -19,6 +19,8 @@ struct RmtrResults {
 
     /// Null where it has not run.
     const SurfaceRun* find(Scenario scenario, Way way, int levels) const;
+    /// Whether anyone has run in it.
+    bool has(Scenario scenario) const;
     /// The most levels that anyone ran with.
     int most_levels() const;
 };

@@ -73,7 +73,7 @@ void print_counts(const RmtrResults& results, Way way, int first_levels, const P
     }
     fmt::print("\n");
     for (const Scenario scenario : scenarios) {
-        if (!results.find(scenario, way, first_levels))
+        if (!results.has(scenario))
             continue;
         fmt::print("{:<20}", scenario_name(scenario));
         for (int levels = first_levels; levels <= results.most_levels(); ++levels) {
@@ -164,7 +164,7 @@ void print_largest_steps(const RmtrResults& results) {
         fmt::print(" {:>14}", way_name(way));
     fmt::print("\n");
     for (const Scenario scenario : scenarios) {
-        if (!results.find(scenario, Way::rmtr, 2))
+        if (!results.has(scenario))
             continue;
         fmt::print("{:<20}", scenario_name(scenario));
         for (const Way way : ways_of_figure_10)
@@ -221,7 +221,7 @@ std::string crossover(const RmtrResults& results, Scenario scenario, const Quant
 void print_crossovers(const RmtrResults& results) {
     fmt::print("\n");
     for (const Scenario scenario : scenarios)
-        if (results.find(scenario, Way::rmtr, 2))
+        if (results.has(scenario))
             fmt::print("{:<20} rmtr is faster {}, and takes less memory {}\n", scenario_name(scenario),
                        crossover(results, scenario, [](const SurfaceRun& run) { return run.seconds; }),
                        crossover(results, scenario, [](const SurfaceRun& run) { return run.peak_memory; }));

@@ -92,22 +92,26 @@ Json solved(const SubdivisionModel& model, double time_limit, Context& context) 
             {"product_units", product_units(outcome.work)}};
 }
 
-bool converges(SurfaceStepper& stepper, const SurfaceStep& step, Deadline& deadline) {
+/// By (7.1): other solvers than those of trust regions end by tests of their own.
+bool converges(SurfaceStepper& stepper, bool has_radius, const SurfaceStep& step, Deadline& deadline) {
     VecX x = as_vector(step.inertial);
     const SurfaceOutcome outcome = stepper.solve(step, x, [&](const SurfaceIteration&) { deadline.check(); });
-    return is_converged(outcome.end);
+    const bool is_small = outcome.gradient_norm < TrustRegionStop().gradient;
+    return is_small || (has_radius && is_converged(outcome.end));
 }
 
 Json largest_step(const SubdivisionModel& model, double time_limit, Context& context) {
     Deadline deadline(time_limit, context);
     SurfaceStepper stepper(model, context);
+    const SurfaceSolver solver = model.solve.rmtr.solver;
+    const bool has_radius = solver == SurfaceSolver::rmtr || solver == SurfaceSolver::trust_region;
     Json found = {{"unknowns", stepper.finest().system().vertex_count() * 3}, {"time_step", 0}, {"timed_out", false}};
     for (double decade = 1; decade > 0.9 * smallest_step; decade /= 10)
         for (const double share : {1.0, 0.5, 0.2}) {
             const double time_step = share * decade;
             if (time_step < 0.9 * smallest_step)
                 break;
-            if (converges(stepper, first_step(model, time_step), deadline)) {
+            if (converges(stepper, has_radius, first_step(model, time_step), deadline)) {
                 found["time_step"] = time_step;
                 return found;
             }
@@ -209,12 +213,12 @@ Json run_json(const SurfaceRun& run) {
 }
 
 LargestStep find_largest_step(Scenario scenario, Way way, int levels, const ContestRules& rules, Context& context) {
-    constexpr int most_iterations = 500;
     const Json json = in_child_process(
         [&] {
             const ThreadLimit limit(rules.threads);
             SubdivisionModel model = contest_model(scenario, way, levels);
-            model.solve.rmtr.max_cycles = most_iterations;
+            if (way == Way::damped_newton)
+                model.solve.rmtr.max_cycles = 100; // 0.7^100: it converges within, or not at all
             return largest_step(model, rules.time_limit, context);
         },
         context);
