@@ -63,7 +63,7 @@ LogPanel panel_of(const RmtrResults& results, const std::string& title, const Qu
     return panel;
 }
 
-/// Measures, and writes what there is after every size, so that an interrupted bench leaves what it had.
+/// Measures, and writes what there is after every contestant, so that an interrupted bench leaves what it had.
 class RmtrBench {
 public:
     RmtrBench(const BenchArguments& arguments, Console& console)
@@ -75,10 +75,8 @@ public:
     }
 
     void run() {
-        for (int levels = arguments_.first_levels; levels <= std::max(sizes_.levels, sizes_.levels_of_some); ++levels) {
+        for (int levels = arguments_.first_levels; levels <= std::max(sizes_.levels, sizes_.levels_of_some); ++levels)
             compete(levels);
-            save();
-        }
         measure_conditions();
         measure_largest_steps();
         save();
@@ -110,6 +108,7 @@ private:
         console_.on_message(fmt::format("{}, {} unknowns, {}: {:.2f} s; {}", scenario_name(scenario), run.unknowns,
                                         way_name(way), run.seconds, run.message));
         results_.runs.push_back(run);
+        save();
     }
 
     void measure_conditions() {
