@@ -73,7 +73,7 @@ TEST_F(Cli, AnIntersectingStartIsRefusedWithItsPlacesAndShown) {
 
 TEST_F(Cli, BenchRmtrPrintsThePapersTablesBesideOurs) {
     const Outcome outcome =
-        run({"bench", "rmtr", "--quick", "--levels", "2", "--scenario", "trampoline", "--time-limit", "10", "--json",
+        run({"bench", "rmtr", "--quick", "--levels", "2", "--scenario", "trampoline", "--time-limit", "2", "--json",
              at("bench.json"), "--plot", at("bench.svg"), "--threads", "1"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* part : {"Table 3", "(29426)", "Table 4", "(633)", "Tables 5 to 7", "Table 8", "Figure 9",
