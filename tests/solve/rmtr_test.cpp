@@ -182,6 +182,7 @@ TEST(Rmtr, IsTheTrustRegionMethodOnOneLevel) {
     RmtrOptions options;
     options.retries = 0;
     TrustRegionOptions single;
+    single.constants = options.constants;
     single.quadratic = options.coarsest;
     Context context;
     const RmtrSummary summary = minimize_by_rmtr(hierarchy.levels, {}, x, options, context);

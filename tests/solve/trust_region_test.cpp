@@ -110,6 +110,28 @@ TEST(TrustRegion, FollowsACurvedValley) {
     }
 }
 
+TEST(TrustRegion, InterpolatesTheRadiusAfterARejection) {
+    const TrustRegionConstants constants = interpolating_constants();
+    TrustRegionConstants halving = constants;
+    halving.least_gamma = halving.gamma1;
+    TrialStep trial;
+    trial.norm = 2;
+    trial.ratio = -1;
+    trial.slope = -4; // of f = -4 t + 10 t^2 at the step's end, t = 1; the minimum is at t = 1/5
+    trial.actual = -6;
+    EXPECT_DOUBLE_EQ(next_radius(constants, 3, trial), 0.2 * 2);
+    EXPECT_EQ(next_radius(halving, 3, trial), 1);
+    trial.actual = -1e9;
+    EXPECT_EQ(next_radius(constants, 3, trial), 2.0 / 16);
+    trial.actual = -std::numeric_limits<double>::infinity();
+    EXPECT_EQ(next_radius(constants, 3, trial), 2.0 / 16);
+    trial.actual = 0.1; // a decrease, but too little of one
+    trial.slope = -1;
+    EXPECT_EQ(next_radius(constants, 3, trial), 1);
+    trial.slope = 0; // unknown
+    EXPECT_EQ(next_radius(constants, 3, trial), 1);
+}
+
 TEST(TrustRegion, TakesAnInfiniteValueForARejection) {
     Valley valley;
     valley.wall = 0.5;

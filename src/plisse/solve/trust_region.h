@@ -32,8 +32,15 @@ struct TrustRegionStop {
     int max_iterations = 1000;
 };
 
-struct TrustRegionOptions {
+/// A rejected step tells how far down the next may go. rmtr does better with the paper's halves (decision 0025).
+inline TrustRegionConstants interpolating_constants() {
     TrustRegionConstants constants;
+    constants.least_gamma = 1.0 / 16;
+    return constants;
+}
+
+struct TrustRegionOptions {
+    TrustRegionConstants constants = interpolating_constants();
     TrustRegionStop stop;
     QuadraticOptions quadratic;
     double radius = 1; ///< the first

@@ -13,9 +13,22 @@ double agreement(double actual, double predicted, double noise) {
     return predicted > 0 && std::isfinite(actual) ? actual / predicted : -std::numeric_limits<double>::infinity();
 }
 
+namespace {
+
+/// Factor of the radius after a rejection: to where the parabola of f and its slope at x, and of f at the step's end,
+/// has its minimum, within bounds.
+double shrinking_factor(const TrustRegionConstants& constants, const TrialStep& trial) {
+    if (trial.slope >= 0)
+        return constants.gamma1;
+    const double above_tangent = -trial.actual - trial.slope;
+    return std::clamp(-0.5 * trial.slope / above_tangent, constants.least_gamma, constants.gamma1);
+}
+
+} // namespace
+
 double next_radius(const TrustRegionConstants& constants, double radius, const TrialStep& trial) {
     if (trial.ratio <= constants.eta1)
-        return constants.gamma1 * std::min(radius, trial.norm);
+        return shrinking_factor(constants, trial) * std::min(radius, trial.norm);
     return trial.ratio > constants.eta2 ? constants.gamma2 * radius : radius;
 }
 
@@ -104,6 +117,7 @@ TrialStep TrustRegionIterate::step(double radius) {
     trial.length = alpha * step.norm();
     trial.actual = value_ - value;
     trial.predicted = model.decrease(alpha);
+    trial.slope = alpha * model.slope;
     trial.ratio = trial.length > 0 ? agreement(trial.actual, trial.predicted, noise(value_)) : 0;
     trial.in_noise = std::abs(trial.actual) < noise(value_) && std::abs(trial.predicted) < noise(value_);
     trial.accepted = trial.ratio > constants_.eta1;

@@ -9,11 +9,12 @@ namespace plisse {
 
 /// Constants of trust regions (Kopanicakova, Krause and Tamstorf 2019, table 2).
 struct TrustRegionConstants {
-    double eta1 = 0.1;    ///< a step is accepted where the ratio of actual to predicted decrease is above it
-    double eta2 = 0.75;   ///< and its radius grows where it is above this
-    double gamma1 = 0.5;  ///< factor of the radius after a rejection, in (0, 1)
-    double gamma2 = 2;    ///< and after a very good step, > 1
-    double noise = 1e-13; ///< decreases below this share of max(1e-3, |f|) say nothing, and count as agreeing
+    double eta1 = 0.1;        ///< a step is accepted where the ratio of actual to predicted decrease is above it
+    double eta2 = 0.75;       ///< and its radius grows where it is above this
+    double gamma1 = 0.5;      ///< largest factor of the radius after a rejection, in (0, 1)
+    double least_gamma = 0.5; ///< and the least one, in (0, gamma1]: between, it goes by interpolation
+    double gamma2 = 2;        ///< and after a very good step, > 1
+    double noise = 1e-13;     ///< decreases below this share of max(1e-3, |f|) say nothing, and count as agreeing
 };
 
 /// Ratio of actual to predicted decrease; 1 where both are below the noise, -infinity where it makes no sense.
@@ -27,6 +28,7 @@ struct TrialStep {
     double norm = 0;   ///< in the norm of the radius, before max_step cut it
     double length = 0; ///< Euclidean, of the step as tried
     double actual = 0, predicted = 0;
+    double slope = 0; ///< g's, of the step as tried; 0 where it is not known
     bool on_boundary = false;
     bool cut = false;      ///< by max_step
     bool in_noise = false; ///< the decrease is too small to be told from rounding
