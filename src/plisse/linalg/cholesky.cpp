@@ -179,12 +179,15 @@ void SparseCholesky<Scalar>::add_update_column(const FrontPlan& plan, int child,
     const auto place = plan.elimination().place_of(child);
     const std::size_t height = 3 * place.size();
     const Scalar* source = updates_.data() + plan.update_start(child) + 3 * j * height;
-    for (std::size_t i = j; i < place.size(); ++i) {
-        const Scalar* from = source + 3 * i;
-        Scalar* to = column + 3 * (place[i] - place[j]);
-        for (int b = 0; b < 3; ++b)
-            for (int a = 0; a < 3; ++a)
-                to[b * stride + a] += from[at(b) * height + at(a)];
+    for (std::size_t begin = j, end; begin < place.size(); begin = end) {
+        for (end = begin + 1; end < place.size() && place[end] == place[end - 1] + 1;)
+            ++end; // rows that follow each other here and there
+        const Scalar* from = source + 3 * begin;
+        Scalar* to = column + 3 * (place[begin] - place[j]);
+        const std::size_t rows = 3 * (end - begin);
+        for (int b = 0; b < 3; ++b, from += height, to += stride)
+            for (std::size_t a = 0; a < rows; ++a)
+                to[a] += from[a];
     }
 }
 
