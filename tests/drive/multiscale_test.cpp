@@ -143,6 +143,22 @@ TEST(Multiscale, ClothLiesOnTheGroundWithoutTouchingIt) {
     }
 }
 
+TEST(Multiscale, NoSolverLeadsThroughTheGround) {
+    for (const SurfaceSolver solver : {SurfaceSolver::rmtr, SurfaceSolver::trust_region, SurfaceSolver::newton,
+                                       SurfaceSolver::damped_newton, SurfaceSolver::linearised}) {
+        SubdivisionModel model = square_metre(2, MaterialLaw::denim_stable, on_two_sides);
+        model.contact.distance = 4e-3;
+        model.solve.rmtr.solver = solver;
+        model.solve.rmtr.max_cycles = 20;
+        add_ground(model, -0.01);
+        Context context;
+        Witness witness;
+        const RunResult result = run_multiscale(model, {}, witness, context);
+        EXPECT_EQ(witness.intersections, 0);
+        EXPECT_GT(height_of_middle(model, result.positions), -0.01);
+    }
+}
+
 /// A loose sheet on a slope, of which gravity's direction makes one.
 SubdivisionModel sheet_on_a_slope(double friction, double slope) {
     SubdivisionModel model = square_metre(1, MaterialLaw::denim_stable, nowhere);

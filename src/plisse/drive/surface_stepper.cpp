@@ -336,7 +336,8 @@ SurfaceOutcome SurfaceStepper::by_fixed_steps(VecX& x, double factor, int most, 
         NewtonSystem& system = finest().system();
         finest().assemble(x, system, false);
         solver.factorize(system);
-        x += factor * system.scatter(solver.solve(system, -system.gather(gradient)));
+        const VecX step = factor * system.scatter(solver.solve(system, -system.gather(gradient)));
+        x += finest().max_step(x, step) * step;
         ++outcome.iterations;
         finest().gradient(x, gradient);
         if (observe)

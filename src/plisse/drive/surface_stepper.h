@@ -64,7 +64,7 @@ private:
     SurfaceOutcome by_rmtr(VecX& x, int most_cycles, bool nested, const Observer& observe);
     SurfaceOutcome by_trust_region(VecX& x, int most, const Observer& observe);
     SurfaceOutcome by_line_search(VecX& x, int most, const Observer& observe);
-    /// Newton's steps times a factor, at most so many.
+    /// Newton's steps times a factor, no longer than is safe, at most so many.
     SurfaceOutcome by_fixed_steps(VecX& x, double factor, int most, const Observer& observe);
 
     const SubdivisionModel& model_;
