@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include <Eigen/Cholesky>
 
 #include <plisse/base/parallel.h>
 #include <plisse/linalg/linear_solver.h>
+#include <plisse/linalg/multigrid.h>
 
 #include "linalg/dense_system.h"
 #include "linalg/grid_system.h"
@@ -88,6 +92,13 @@ TEST(LinearSolver, ShiftsByNoMoreThanItTakes) {
     const VecX b = ramp(150);
     const VecX x = solver.solve(system, b);
     EXPECT_LT((dense(system) * x + larger * x - b).norm(), 1e-9 * b.norm());
+}
+
+TEST(LinearSolver, RefusesWhatNoShiftMakesDefinite) {
+    NewtonSystem system = loose_chain(3, 1);
+    system.add_block(1, 1, std::nan("") * Mat3::Identity());
+    EXPECT_THROW(LinearSolver().factorize(system), std::runtime_error);
+    EXPECT_THROW(ShiftedCholesky().factorize(system), std::runtime_error);
 }
 
 TEST(LinearSolver, DescendsWhereHIsIndefiniteByLessThanSinglePrecisionSees) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <limits>
+#include <stdexcept>
 
 #include <cblas.h>
 
@@ -198,12 +200,25 @@ bool SparseCholesky<Scalar>::eliminate(const FrontPlan& plan, int front) {
     Scalar* panel = panels_.data() + plan.panel_start(front);
     if (!factorize_block(pivots, panel, size))
         return false;
+    for (int p = 0; p < pivots; ++p) // LAPACK lets through what is not a number
+        if (!(panel[p * (std::ptrdiff_t{size} + 1)] > 0))
+            return false;
     if (reach == 0)
         return true;
     solve_below(reach, pivots, panel, size);
     const Scalar updated = plan.elimination().children[at(front)].empty() ? 0 : 1; // 0 clears what the memory holds
     subtract_square(reach, pivots, panel + pivots, size, updated, updates_.data() + plan.update_start(front));
     return true;
+}
+
+double larger_shift(const NewtonSystem& system, double shift, double first_share, double growth) {
+    double largest = 0;
+    for (const Mat3& block : system.blocks()) {
+        if (!block.allFinite())
+            throw std::runtime_error("a Hessian has entries that are not finite");
+        largest = std::max(largest, block.cwiseAbs().maxCoeff());
+    }
+    return std::max({first_share * largest, growth * shift, std::numeric_limits<double>::min()});
 }
 
 template class SparseCholesky<float>;

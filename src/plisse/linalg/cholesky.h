@@ -32,6 +32,10 @@ private:
     Vector carried_; ///< of every entry of Elimination::reach, what a solve carries from front to front
 };
 
+/// The shift to try after one that was too small: a share of H's largest entry, or a multiple of the last shift. Throws
+/// std::runtime_error where H is not finite, which none makes definite.
+double larger_shift(const NewtonSystem& system, double shift, double first_share, double growth);
+
 extern template class SparseCholesky<float>;
 extern template class SparseCholesky<double>;
 

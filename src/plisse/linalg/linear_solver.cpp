@@ -1,6 +1,5 @@
 #include <plisse/linalg/linear_solver.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace plisse {
@@ -14,12 +13,9 @@ double LinearSolver::factorize(const NewtonSystem& system) {
     if (try_factorize(system))
         return 0;
     precision_ = Precision::full;
-    double largest = 0;
-    for (const Mat3& block : system.blocks())
-        largest = std::max(largest, block.cwiseAbs().maxCoeff());
     double shift = 0;
     while (!full_.factorize(plan_, system, shift))
-        shift = std::max(1e-12 * largest, 10 * shift);
+        shift = larger_shift(system, shift, 1e-12, 10);
     return shift;
 }
 

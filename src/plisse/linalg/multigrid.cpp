@@ -26,13 +26,9 @@ bool ShiftedCholesky::try_factorize(const NewtonSystem& matrix, double shift) {
 }
 
 double ShiftedCholesky::factorize(const NewtonSystem& matrix) {
-    constexpr double first_share = 1e-11, growth = 4;
-    double largest = 0;
-    for (const Mat3& block : matrix.blocks())
-        largest = std::max(largest, block.cwiseAbs().maxCoeff());
     double shift = 0;
     while (!try_factorize(matrix, shift))
-        shift = std::max(first_share * largest, growth * shift);
+        shift = larger_shift(matrix, shift, 1e-11, 4);
     return shift;
 }
 
