@@ -30,7 +30,7 @@ struct BenchSizes {
     double time_limit;     ///< s
 };
 constexpr BenchSizes full_sizes{6, 7, 3, 4, 3, 600};
-constexpr BenchSizes quick_sizes{3, 3, 3, 3, 3, 15};
+constexpr BenchSizes quick_sizes{3, 3, 3, 3, 3, 12};
 
 BenchSizes sizes_for(const BenchArguments& arguments) {
     BenchSizes sizes = arguments.quick ? quick_sizes : full_sizes;
