@@ -134,7 +134,8 @@ NewtonSummary LevelStepper::solve_rubbing_step(double t, double tolerance, const
     bool gripped = problem_.friction_grips();
     NewtonSummary whole = solve_step(t, tolerance, phase, most_iterations);
     NewtonSummary part = whole;
-    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_, friction_share(update)); ++update) {
+    for (int update = 0; whole.end == NewtonEnd::converged && problem_.update_friction(x_, friction_share(update));
+         ++update) {
         if (part.iterations == 0 && !gripped)
             break;
         gripped = false;

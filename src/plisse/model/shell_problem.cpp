@@ -127,9 +127,9 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
     options.stiffness = contact_stiffness(model);
     contact_ = std::make_unique<Contact>(CollisionMesh(mesh.rest, mesh.faces, mesh.part, obstacle), options);
     contact_->set_times(&context.times);
-    friction_ = std::make_unique<Friction>(
-        contact_->mesh(),
-        FrictionOptions{model.contact.friction_velocity * model.solve.time_step, friction_coefficients(model.contact, model.part_count())});
+    friction_ = std::make_unique<Friction>(contact_->mesh(),
+                                           FrictionOptions{model.contact.friction_velocity * model.solve.time_step,
+                                                           friction_coefficients(model.contact, model.part_count())});
     build_system(layout.prescribed);
 
     estimate_round_off();
