@@ -57,7 +57,7 @@ TEST(Multiscale, TrampolinesSagAsTheirSpecificationSays) {
 }
 
 /// The rest of acceptance 8.
-TEST(SlowMultiscale, FineTrampolinesSagAsTheirSpecificationSays) {
+TEST(Multiscale, FineTrampolinesSagAsTheirSpecificationSays) {
     for (int levels = 4; levels <= 5; ++levels) {
         const SubdivisionModel model = square_metre(levels, MaterialLaw::denim_table, anywhere);
         EXPECT_NEAR(height_of_middle(model, run_cloth(model).positions), -0.02724, 1e-5);
