@@ -20,6 +20,7 @@
 #include <plisse/scene/overrides.h>
 #include <plisse/scene/read_scene.h>
 #include <plisse/scene/run_folder.h>
+#include <plisse/steer/replay.h>
 
 #include "console.h"
 #include "exit_status.h"
@@ -62,21 +63,24 @@ const std::vector<MeshAttribute>& attributes_of(const ReadyModel& ready) {
     return std::get<SubdivisionModel>(ready).surface.attributes;
 }
 
-RunResult run_ready(const ReadyModel& ready, const RunOptions& options, Recorder& recorder, Context& context) {
+RunResult run_ready(const Scene& scene, const ReadyModel& ready, const RunOptions& options, Recorder& recorder,
+                    Context& context) {
+    if (scene.edits)
+        return replay(scene, read_edit_log(scene.folder / *scene.edits), options, recorder, context);
     if (const Model* model = std::get_if<Model>(&ready))
         return run(*model, options, recorder, context);
     return run_multiscale(std::get<SubdivisionModel>(ready), options, recorder, context);
 }
 
 /// Runs into the folder. When that throws, the folder says so, or vanishes when nothing could be begun.
-RunResult run_into(RunFolder& folder, const ReadyModel& ready, const RunArguments& arguments, Context& context) {
+RunResult run_into(RunFolder& folder, const Scene& scene, const ReadyModel& ready, const RunArguments& arguments, Context& context) {
     std::optional<HierarchyCache> cache;
     if (const auto caches = HierarchyCache::default_folder(); caches && !arguments.no_cache)
         cache.emplace(*caches, context);
     const RunOptions options{arguments.until.value_or(-1), folder.checkpoint() ? &*folder.checkpoint() : nullptr,
                              cache ? &*cache : nullptr};
     try {
-        RunResult result = run_ready(ready, options, folder, context);
+        RunResult result = run_ready(scene, ready, options, folder, context);
         if (result.positions.cols() > 0)
             folder.write_final(result.level, result.positions);
         folder.on_report(result.report);
@@ -129,7 +133,7 @@ void run_scene(const RunArguments& arguments) {
     if (arguments.resume && !folder.checkpoint())
         console.on_message(fmt::format("{} has no checkpoint: the run begins at its beginning", arguments.folder));
 
-    const RunResult result = run_into(folder, ready, arguments, console);
+    const RunResult result = run_into(folder, scene, ready, arguments, console);
     console.clear_bar();
     print_end(arguments, {result.report, {PLISSE_VERSION, limit.threads(), peak_memory_bytes()}}, style);
     if (const ExitCode code = exit_code(result.report); code != ExitCode::done)

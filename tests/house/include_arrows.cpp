@@ -10,9 +10,9 @@ namespace plisse::house {
 namespace {
 
 /// Each folder may include those before it.
-constexpr std::array<std::string_view, 14> order = {"base",     "linalg",   "geometry",  "spatial", "mesh",
+constexpr std::array<std::string_view, 15> order = {"base",     "linalg",   "geometry",  "spatial", "mesh",
                                                     "transfer", "decimate", "subdivide", "energy",  "contact",
-                                                    "solve",    "model",    "drive",     "scene"};
+                                                    "solve",    "model",    "drive",     "scene", "steer"};
 /// Beside the order: nothing includes it, and it includes these only.
 constexpr std::string_view aside = "picture";
 constexpr std::array<std::string_view, 2> seen_from_aside = {"base", "mesh"};

@@ -33,6 +33,8 @@ public:
 
     /// Asks the run to end after the current step. Safe from another thread and from a signal handler.
     void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
+    /// Takes that back, for a run that may be stopped and go on.
+    void resume() { cancelled_.store(false, std::memory_order_relaxed); }
     bool cancelled() const { return cancelled_.load(std::memory_order_relaxed); }
 
     PhaseTimes times;

@@ -243,35 +243,45 @@ LevelStepper::Outcome LevelStepper::bring_to_thickness(double t) {
     return outcome;
 }
 
+bool LevelStepper::timeline_is_over(double duration) const {
+    return progress_.step >= timeline_steps(duration, settings_.time_step);
+}
+
 LevelStepper::Outcome LevelStepper::run_timeline(double duration) {
-    const double h = settings_.time_step;
-    const int steps = timeline_steps(duration, h);
     Outcome worst = Outcome::done;
     if (progress_.step == 0)
         log_.frame(level_, 0, "preview", positions());
-    while (progress_.step < steps) {
-        const double t_before = std::min(progress_.step * h, duration);
-        const double t = std::min((progress_.step + 1) * h, duration);
-        const VecX before = x_;
-        const VecX motion =
-            progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
-        begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
-        extrapolate(motion);
-        const NewtonSummary summary = solve_pressed_step(t, settings_.tolerance, "preview", iteration_cap());
-        if (summary.end == NewtonEnd::cancelled) {
-            x_ = before;
-            return Outcome::cancelled;
-        }
-        progress_.velocity = as_positions(VecX((x_ - before) / h));
-        progress_.friction = problem_.friction_memory();
-        worst = std::max(worst, outcome_of(summary));
-        ++progress_.step;
-        const double interval = settings_.frame_interval;
-        if (std::floor(t / interval + 1e-9) > std::floor(t_before / interval + 1e-9) || progress_.step == steps)
-            log_.frame(level_, t, "preview", positions());
-        save_checkpoint(t);
+    while (!timeline_is_over(duration)) {
+        const Outcome outcome = step_timeline(duration);
+        if (outcome == Outcome::cancelled)
+            return outcome;
+        worst = std::max(worst, outcome);
     }
     return worst;
+}
+
+LevelStepper::Outcome LevelStepper::step_timeline(double duration) {
+    const double h = settings_.time_step;
+    const double t_before = std::min(progress_.step * h, duration);
+    const double t = std::min((progress_.step + 1) * h, duration);
+    const VecX before = x_;
+    const VecX motion =
+        progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
+    begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
+    extrapolate(motion);
+    const NewtonSummary summary = solve_pressed_step(t, settings_.tolerance, "preview", iteration_cap());
+    if (summary.end == NewtonEnd::cancelled) {
+        x_ = before;
+        return Outcome::cancelled;
+    }
+    progress_.velocity = as_positions(VecX((x_ - before) / h));
+    progress_.friction = problem_.friction_memory();
+    ++progress_.step;
+    const double interval = settings_.frame_interval;
+    if (std::floor(t / interval + 1e-9) > std::floor(t_before / interval + 1e-9) || timeline_is_over(duration))
+        log_.frame(level_, t, "preview", positions());
+    save_checkpoint(t);
+    return outcome_of(summary);
 }
 
 LevelStepper::Outcome LevelStepper::step_once(double t) {
@@ -286,44 +296,48 @@ LevelStepper::Outcome LevelStepper::step_once(double t) {
 }
 
 LevelStepper::Outcome LevelStepper::settle(double t) {
-    LevelReport& report = log_.level_report(level_);
+    while (progress_.settle_step < settings_.max_settle_steps)
+        if (const Outcome outcome = step_settling(t); outcome != Outcome::cut_short)
+            return outcome;
+    return Outcome::cut_short;
+}
+
+LevelStepper::Outcome LevelStepper::step_settling(double t) {
     constexpr double largest_growth = 1e3;
-    while (progress_.settle_step < settings_.max_settle_steps) {
-        const VecX before = x_;
-        const double h = progress_.settle_time_step;
-        begin_settling_step(t, h);
-        // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short. But a
-        // script that has not arrived in one is blocked, and that takes longer to find out.
-        const int most = progress_.settle_step == 0 || scripts_have_arrived()
-                             ? std::min(iteration_cap(), preview_iteration_cap)
-                             : settings_.max_iterations_per_step.value_or(final_iteration_cap);
-        const NewtonSummary summary = solve_pressed_step(t, progress_.settle_tolerance, "settle", most);
-        if (summary.end == NewtonEnd::cancelled) {
-            x_ = before;
-            return Outcome::cancelled;
-        }
-        if (summary.end == NewtonEnd::blocked)
-            return Outcome::stalled;
-        ++progress_.settle_step;
-        if (summary.end == NewtonEnd::converged) { // else contacts may be on a way that they have yet to take back
-            problem_.remember_friction(x_);
-            progress_.friction = problem_.friction_memory();
-        }
-        const bool at_rest = summary.end == NewtonEnd::converged && summary.iterations == 0;
-        if (at_rest && problem_.residual(x_) <= largest_residual) {
-            report.equilibrium = true;
-            return Outcome::done;
-        }
-        if (at_rest)
-            progress_.settle_tolerance *= 0.1;
-        if (summary.end == NewtonEnd::stalled)
-            progress_.settle_time_step = std::max(0.1 * h, 1e-3 * settings_.time_step);
-        else if (summary.end == NewtonEnd::iteration_cap && problem_.friction_possible())
-            progress_.settle_time_step = std::max(0.5 * h, 1e-3 * settings_.time_step); // lest it rubs to and fro
-        else if (summary.iterations <= most / 2)
-            progress_.settle_time_step = std::min(2 * h, largest_growth * settings_.time_step);
-        save_checkpoint(t);
+    const VecX before = x_;
+    const double h = progress_.settle_time_step;
+    begin_settling_step(t, h);
+    // A settling step is only a means: equilibrium is judged at its start, so it may always be cut short. But a
+    // script that has not arrived in one is blocked, and that takes longer to find out.
+    const int most = progress_.settle_step == 0 || scripts_have_arrived()
+                         ? std::min(iteration_cap(), preview_iteration_cap)
+                         : settings_.max_iterations_per_step.value_or(final_iteration_cap);
+    const NewtonSummary summary = solve_pressed_step(t, progress_.settle_tolerance, "settle", most);
+    if (summary.end == NewtonEnd::cancelled) {
+        x_ = before;
+        return Outcome::cancelled;
     }
+    if (summary.end == NewtonEnd::blocked)
+        return Outcome::stalled;
+    ++progress_.settle_step;
+    if (summary.end == NewtonEnd::converged) { // else contacts may be on a way that they have yet to take back
+        problem_.remember_friction(x_);
+        progress_.friction = problem_.friction_memory();
+    }
+    const bool at_rest = summary.end == NewtonEnd::converged && summary.iterations == 0;
+    if (at_rest && problem_.residual(x_) <= largest_residual) {
+        log_.level_report(level_).equilibrium = true;
+        return Outcome::done;
+    }
+    if (at_rest)
+        progress_.settle_tolerance *= 0.1;
+    if (summary.end == NewtonEnd::stalled)
+        progress_.settle_time_step = std::max(0.1 * h, 1e-3 * settings_.time_step);
+    else if (summary.end == NewtonEnd::iteration_cap && problem_.friction_possible())
+        progress_.settle_time_step = std::max(0.5 * h, 1e-3 * settings_.time_step); // lest it rubs to and fro
+    else if (summary.iterations <= most / 2)
+        progress_.settle_time_step = std::min(2 * h, largest_growth * settings_.time_step);
+    save_checkpoint(t);
     return Outcome::cut_short;
 }
 

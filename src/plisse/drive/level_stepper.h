@@ -21,6 +21,7 @@ public:
     void start_from(const Checkpoint& progress);
     Positions positions() const { return as_positions(x_); }
     Checkpoint& progress() { return progress_; }
+    const Checkpoint& progress() const { return progress_; }
 
     /// Moves surfaces that are nearer than their contact thickness apart until none is, by steps at time t in which
     /// only a growing share of it is enforced, with a barrier that stiffens where the loads are too strong for it.
@@ -29,10 +30,15 @@ public:
 
     /// Runs the timeline from progress().step on, saving frames and checkpoints. `done` when no step failed.
     Outcome run_timeline(double duration);
+    bool timeline_is_over(double duration) const;
+    /// The next step of the timeline, which is not over.
+    Outcome step_timeline(double duration);
 
     /// Steps at time t until equilibrium (CONTRACT.md, "A state is at equilibrium when"), with time steps that grow as
     /// long as the solver copes: they only regularise. `cut_short` when max_settle_steps were not enough.
     Outcome settle(double t);
+    /// The next step of that: `done` at equilibrium, `cut_short` on the way there, `stalled` when a script is blocked.
+    Outcome step_settling(double t);
 
     /// One step at time t, as a level gets that is not to settle.
     Outcome step_once(double t);

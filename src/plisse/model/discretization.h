@@ -30,6 +30,10 @@ public:
     /// On the finest level. By subdivision a vertex between others belongs to a handle or a load when all of those do,
     /// and attributes are left out.
     const Model& model() const { return model_; }
+    /// Puts another model in its place that differs in nothing but parameters: materials, pressures, motions that are
+    /// the same at t = 0, values of loads, pulls, gravity, contact and the solver's settings. Problems and steppers made
+    /// before must not be used any more.
+    void set_model(Model model) { model_ = std::move(model); }
     /// Of a subdivided mesh the hierarchy and its counts.
     const DecimationResult& decimation() const { return decimation_; }
     const Hierarchy& hierarchy() const { return decimation_.hierarchy; }

@@ -77,6 +77,18 @@ struct Load {
     Track<Vec3> value{Vec3::Zero()};
 };
 
+/// Springs of rest length 0 from vertices of a body to places in space, as a hand pulls at cloth.
+struct Pull {
+    struct Point {
+        int vertex = 0; ///< of the model's mesh
+        Track<Vec3> to{Vec3::Zero()};
+    };
+    std::string name;
+    int body = 0;
+    double stiffness = 0; ///< N/m of each spring, > 0
+    std::vector<Point> points;
+};
+
 struct ContactSettings {
     /// Coulomb's coefficient between two parts, or within one.
     struct Pair {
@@ -138,6 +150,7 @@ struct Model {
     std::vector<Obstacle> obstacles;
     std::vector<Handle> handles;
     std::vector<Load> loads;
+    std::vector<Pull> pulls;
     Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
     ContactSettings contact;
     HierarchySettings hierarchy;

@@ -97,16 +97,18 @@ ShellProblem::ShellProblem(const Discretization& discretization, int level, Ener
         mass_ = dead_loads_.masses();
     }
 
+    pulls_ = Pulls(discretization, proxy ? finest : level);
     if (proxy) {
         elasticity_ = std::make_unique<ShellEnergies>(model, hierarchy.finest().rest, fine_layout,
                                                       ShellEnergies::Parts{true, !bending_on_level, true});
         if (bending_on_level)
             level_bending_ =
                 std::make_unique<ShellEnergies>(model, mesh.rest, layout, ShellEnergies::Parts{false, true, false});
-        if (!uses_galerkin())
+        if (!uses_galerkin()) {
+            level_pulls_ = Pulls(discretization, level);
             curvature_ = std::make_unique<ShellEnergies>(model, mesh.rest, layout,
                                                          ShellEnergies::Parts{true, !bending_on_level, false});
-        else {
+        } else {
             carrier_->product =
                 GalerkinProduct(carrier_->prolongation.stencils(), vertex_count(), elasticity_->pairs());
             carrier_->fine_hessian =
@@ -206,6 +208,7 @@ void ShellProblem::begin_relaxation(const Positions& current, const std::vector<
     const double h = discretization_.model().solve.time_step;
     inverse_h_squared_ = 1 / (h * h);
     gravity_forces_ = load_forces_ = Positions::Zero(3, current.cols());
+    pulls_ = Pulls();
     contact_->forget();
     x_memo_.resize(3, 0);
 }
@@ -239,6 +242,7 @@ void ShellProblem::set_step(const Positions& current, const Positions& anchor, d
     elasticity_->set_time(t);
     gravity_forces_ = dead_loads_.weight(t);
     load_forces_ = dead_loads_.loads(t);
+    pulls_.set_time(t);
     if (!carrier_ && level_ < discretization_.finest()) {
         const Prolongation prolongation =
             prolongation_to_finest(discretization_.hierarchy(), level_, ProlongationOperator::intrinsic);
@@ -292,7 +296,7 @@ EnergyBreakdown ShellProblem::energies(const VecX& x) {
         const Positions& y = carried(x);
         parts.elastic = elasticity_->elastic_value(y);
         parts.gravity = -gravity_forces_.cwiseProduct(y).sum();
-        parts.loads = elasticity_->pressure_value(y) - load_forces_.cwiseProduct(y).sum();
+        parts.loads = elasticity_->pressure_value(y) - load_forces_.cwiseProduct(y).sum() + pulls_.value(y);
         if (level_bending_)
             parts.elastic += level_bending_->elastic_value(x_memo_);
         parts.strain_limit = strain_limit_.value(x_memo_);
@@ -315,6 +319,7 @@ void ShellProblem::gradient(const VecX& x, VecX& gradient) {
         Positions on_carrier = -gravity_forces_ - load_forces_;
         elasticity_->add_elastic_gradient(y, on_carrier);
         elasticity_->add_pressure_gradient(y, on_carrier);
+        pulls_.add_gradient(y, on_carrier);
         sum = pull_back(x, on_carrier);
         if (level_bending_)
             level_bending_->add_elastic_gradient(points, sum);
@@ -341,9 +346,10 @@ NodalForces ShellProblem::forces(const VecX& x) {
     result.strain_limit = Positions::Zero(3, vertex_count());
     strain_limit_.add_gradient(points, result.strain_limit);
     result.strain_limit *= -1;
-    Positions pressure = Positions::Zero(3, y.cols());
-    elasticity_->add_pressure_gradient(y, pressure);
-    result.loads = pull_back(x, load_forces_ - pressure);
+    Positions against_loads = Positions::Zero(3, y.cols());
+    elasticity_->add_pressure_gradient(y, against_loads);
+    pulls_.add_gradient(y, against_loads);
+    result.loads = pull_back(x, load_forces_ - against_loads);
     result.gravity = pull_back(x, gravity_forces_);
     result.contact = Positions::Zero(3, vertex_count());
     contact_->add_gradient(points, result.contact);
@@ -370,11 +376,14 @@ void ShellProblem::assemble(const VecX& x, NewtonSystem& system, bool project) {
             system.add_block(v, v, inverse_h_squared_ * mass_[v] * Mat3::Identity());
         if (!carrier_) {
             elasticity_->add_hessian(points, system, project);
+            pulls_.add_hessian(system);
         } else if (curvature_) {
             curvature_->add_hessian(points, system, project);
+            level_pulls_.add_hessian(system);
         } else {
             carrier_->fine_hessian.begin({});
             elasticity_->add_hessian(y_memo_, carrier_->fine_hessian, project);
+            pulls_.add_hessian(carrier_->fine_hessian);
             carrier_->product.add(carrier_->prolongation.jacobian(points), carrier_->fine_hessian, system);
         }
         if (level_bending_)

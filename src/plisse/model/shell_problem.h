@@ -8,6 +8,7 @@
 #include <plisse/contact/contact.h>
 #include <plisse/contact/friction.h>
 #include <plisse/model/dead_loads.h>
+#include <plisse/model/pulls.h>
 #include <plisse/model/shell_energies.h>
 #include <plisse/model/strain_limit.h>
 #include <plisse/solve/objective.h>
@@ -124,6 +125,8 @@ private:
     std::unique_ptr<ShellEnergies> elasticity_;    ///< on the carrying mesh
     std::unique_ptr<ShellEnergies> level_bending_; ///< when bending_on is level
     std::unique_ptr<ShellEnergies> curvature_;     ///< the level's own Hessian, when curvature is own
+    Pulls pulls_;                                  ///< on the carrying mesh
+    Pulls level_pulls_;                            ///< on the level, when curvature is own
     RestTriangles triangles_;                      ///< of the bodies, on the level
     StrainLimit strain_limit_;
     std::unique_ptr<Contact> contact_;

@@ -34,6 +34,11 @@ struct Track {
     }
 };
 
+/// Whether the value is 0 at all times.
+inline bool is_zero(const Track<double>& track) {
+    return track.is_constant() && track.keys.front().value == 0;
+}
+
 /// Scripted rigid motion: a point p of the start goes to rotate(p - about) + about + translate, the rotation being
 /// about x, then y, then z by the scripted angles.
 struct MotionTrack {

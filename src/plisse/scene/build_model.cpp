@@ -7,11 +7,9 @@
 #include <fmt/core.h>
 
 #include <plisse/energy/rest_triangles.h>
-#include <plisse/mesh/connectivity.h>
 #include <plisse/mesh/intersecting_surfaces.h>
-#include <plisse/scene/contact_settings.h>
 #include <plisse/scene/load_part.h>
-#include <plisse/scene/motion_track.h>
+#include <plisse/scene/model_parameters.h>
 #include <plisse/scene/select_vertices.h>
 #include <plisse/spatial/intersections.h>
 
@@ -34,10 +32,8 @@ public:
             add_handle(scene_.handles[i], fmt::format("/handles/{}", i));
         for (std::size_t i = 0; i < scene_.loads.size(); ++i)
             add_load(scene_.loads[i], fmt::format("/loads/{}", i));
-        model_.gravity = scene_.gravity;
-        model_.contact = contact_settings(scene_);
         model_.hierarchy = scene_.hierarchy;
-        model_.solve = scene_.solve;
+        set_parameters(scene_, model_);
         expect_no_flood_of_faces();
         expect_no_intersections();
         for (std::size_t b = 0; b < model_.bodies.size(); ++b)
@@ -68,30 +64,10 @@ private:
         if (spec.start)
             start = same_mesh(mesh, *spec.start, spec.transform, pointer + "/start");
 
-        expect_sides(spec, mesh, pointer);
         Body& body = model_.bodies.emplace_back();
         body.name = spec.name;
         std::tie(body.vertices, body.faces) = append(mesh, start);
-        body.material = spec.material;
-        body.pressure = spec.pressure;
         body.flat_rest_angles = spec.rest.kind == RestSpec::Kind::flat_angles;
-    }
-
-    /// Pressure needs an inside and an outside, or at least one front.
-    void expect_sides(const BodySpec& spec, const TriangleMesh& mesh, const std::string& pointer) const {
-        const auto& keys = spec.pressure.keys;
-        if (std::all_of(keys.begin(), keys.end(), [](const auto& key) { return key.value == 0; }))
-            return;
-        const Connectivity connectivity(mesh.vertex_count(), mesh.faces);
-        if (const auto joints = connectivity.non_manifold_edges(); !joints.empty()) {
-            const Edge& edge = connectivity.edges()[static_cast<std::size_t>(joints.front())];
-            throw scene_.error_at(
-                pointer + "/pressure",
-                fmt::format("sheets are joined at edges of more than two faces, such as {}-{}, so the "
-                            "body has no two sides for a pressure to act between",
-                            edge[0], edge[1]),
-                "give a load with a `traction` on the vertices that it acts on");
-        }
     }
 
     Positions same_mesh(const TriangleMesh& mesh, const MeshSpec& spec, const TransformSpec& transform,
@@ -108,7 +84,6 @@ private:
         Obstacle& obstacle = model_.obstacles.emplace_back();
         obstacle.name = spec.name;
         std::tie(obstacle.vertices, obstacle.faces) = append(mesh, mesh.positions);
-        obstacle.motion = motion_track(spec.motion);
         obstacle.progressive = spec.progressive;
     }
 
@@ -133,7 +108,6 @@ private:
         handle.body = body_number(spec.body);
         handle.vertices = selected(handle.body, spec.select, pointer + "/select");
         handle.axes = spec.axes;
-        handle.motion = motion_track(spec.motion);
         expect_free_axes(handle, pointer);
         model_.handles.push_back(std::move(handle));
     }
@@ -161,10 +135,8 @@ private:
 
     void add_load(const LoadSpec& spec, const std::string& pointer) {
         Load& load = model_.loads.emplace_back();
-        load.kind = spec.force ? Load::Kind::force : Load::Kind::traction;
         load.body = body_number(spec.body);
         load.vertices = selected(load.body, spec.select, pointer + "/select");
-        load.value = spec.force ? *spec.force : *spec.traction;
     }
 
     /// Each level made by subdivision has four times the faces.

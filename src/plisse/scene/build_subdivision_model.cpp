@@ -23,10 +23,6 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-bool is_zero(const Track<double>& track) {
-    return std::all_of(track.keys.begin(), track.keys.end(), [](const auto& key) { return key.value == 0; });
-}
-
 /// Refuses what a scene may ask of other methods.
 void expect_known_to_rmtr(const Scene& scene) {
     const auto refuse = [&](const std::string& pointer, const std::string& what, const std::string& right) {
@@ -40,6 +36,8 @@ void expect_known_to_rmtr(const Scene& scene) {
                    "leave it out: all three are held");
     if (!scene.loads.empty())
         refuse("/loads", "loads are not supported by", "leave them out, or give another method");
+    if (!scene.pulls.empty())
+        refuse("/pulls", "pulls are not supported by", "leave them out, or give another method");
     const BodySpec& body = scene.bodies.front();
     if (!is_zero(body.pressure))
         refuse("/bodies/0/pressure", "pressure is not supported by", "leave it out, or give another method");

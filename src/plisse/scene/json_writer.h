@@ -27,6 +27,10 @@ public:
             json_[key] = write(value);
     }
     template <typename Value>
+    void required(const char* key, Value& value, const Limits&, const char*) {
+        json_[key] = write(value);
+    }
+    template <typename Value>
     void required(const char* key, Value& value, const char*) {
         json_[key] = write(value);
     }

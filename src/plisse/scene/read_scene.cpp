@@ -89,10 +89,14 @@ public:
             at_.member(*member).fail("this key means nothing here", fmt::format("leave it out: it is {}", doc));
     }
     template <typename Value>
-    void required(const char* key, Value& value, const char* doc) {
+    void required(const char* key, Value& value, const Limits& limits, const char* doc) {
         if (!find(key))
             fail_missing(key, doc);
-        field(key, value, doc);
+        field(key, value, limits, doc);
+    }
+    template <typename Value>
+    void required(const char* key, Value& value, const char* doc) {
+        required(key, value, Limits{}, doc);
     }
     template <typename Value>
     void alternative(const char* key, std::optional<Value>& value, const char* doc) {

@@ -46,6 +46,10 @@ void resolve_names(Scene& scene) {
         expect_name(scene, fmt::format("/handles/{}/body", i), scene.handles[i].body, bodies, "body");
     for (std::size_t i = 0; i < scene.loads.size(); ++i)
         expect_name(scene, fmt::format("/loads/{}/body", i), scene.loads[i].body, bodies, "body");
+    std::vector<std::string> pulls;
+    name_all(scene, scene.pulls, "pull", "pulls", pulls);
+    for (std::size_t i = 0; i < scene.pulls.size(); ++i)
+        expect_name(scene, fmt::format("/pulls/{}/body", i), scene.pulls[i].body, bodies, "body");
     for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
         expect_name(scene, fmt::format("/contact/pairs/{}/a", i), scene.contact.pairs[i].a, parts, "body or obstacle");
         expect_name(scene, fmt::format("/contact/pairs/{}/b", i), scene.contact.pairs[i].b, parts, "body or obstacle");

@@ -96,6 +96,18 @@ struct LoadSpec {
     std::optional<Track<Vec3>> force, traction;
 };
 
+/// A vertex and where it is pulled to.
+struct PullPointSpec {
+    int vertex = 0; ///< of the body's own mesh
+    Track<Vec3> to{Vec3::Zero()};
+};
+
+struct PullSpec {
+    std::string name, body;
+    double stiffness = 0; ///< N/m of each spring
+    std::vector<PullPointSpec> points;
+};
+
 /// A pair of bodies or obstacles with contact settings of its own.
 struct ContactPairSpec {
     std::string a, b;
@@ -117,10 +129,12 @@ struct Scene {
     std::vector<ObstacleSpec> obstacles;
     std::vector<HandleSpec> handles;
     std::vector<LoadSpec> loads;
+    std::vector<PullSpec> pulls;
     Track<Vec3> gravity{Vec3(0, -9.81, 0)}; ///< m/s^2
     ContactSpec contact;
     HierarchySettings hierarchy;
     SolveSettings solve;
+    std::optional<std::string> edits; ///< the file of an edit log, relative to the scene file
 
     std::filesystem::path folder;                 ///< where relative mesh files are looked for
     std::shared_ptr<const JsonDocument> document; ///< for the places in messages; null for a scene made in memory

@@ -48,6 +48,8 @@ SceneCopy copy_scene(const Scene& scene) {
     }
     for (ObstacleSpec& obstacle : copy.scene.obstacles)
         take(obstacle.mesh);
+    if (copy.scene.edits)
+        copy.scene.edits = place_for(scene.folder / *scene.edits, read_bytes(scene.folder / *scene.edits), copy.meshes);
     return copy;
 }
 

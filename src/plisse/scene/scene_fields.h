@@ -14,7 +14,7 @@ namespace plisse {
 /// The keys of a scene file, each listed once: `describe(visitor, object)` names every key with the field it fills, its
 /// limits and its meaning. Visitors are the reader, the writer and the schema; each offers
 ///   field(key, value, [limits,] doc)     a key that may be left out
-///   required(key, value, doc)            a key that may not
+///   required(key, value, [limits,] doc)  a key that may not
 ///   field_if(applies, key, value, limits, doc)   a key that other keys' values rule out
 ///   alternative(key, optional, doc)      one of several keys of which the object has one
 ///   check(holds, key, wrong, right)      what one key's type cannot say; only the reader minds
@@ -305,6 +305,20 @@ void describe(Visitor& v, LoadSpec& l) {
 }
 
 template <typename Visitor>
+void describe(Visitor& v, PullPointSpec& p) {
+    v.required("vertex", p.vertex, not_negative, "number of a vertex of the body's mesh");
+    v.required("to", p.to, "the place it is pulled to, m; a value or keyframes [[t, value], ...]");
+}
+
+template <typename Visitor>
+void describe(Visitor& v, PullSpec& p) {
+    v.field("name", p.name, "left out: pull-0, pull-1 ...");
+    v.required("body", p.body, "a body's name");
+    v.required("stiffness", p.stiffness, positive, "N/m, of the spring at each vertex");
+    v.required("points", p.points, "the vertices that are pulled");
+}
+
+template <typename Visitor>
 void describe(Visitor& v, ContactPairSpec& p) {
     v.required("a", p.a, "a body's or obstacle's name");
     v.required("b", p.b, "a body's or obstacle's name");
@@ -400,10 +414,13 @@ void describe(Visitor& v, Scene& s) {
     v.field("obstacles", s.obstacles, "collision objects, fixed or scripted");
     v.field("handles", s.handles, "prescribed vertices");
     v.field("loads", s.loads, "dead loads on vertices");
+    v.field("pulls", s.pulls, "springs that pull vertices of bodies to places, as a hand does");
     v.field("gravity", s.gravity, "m/s^2; a value or keyframes [[t, value], ...]");
     v.field("contact", s.contact, "contact between and within surfaces");
     v.field("hierarchy", s.hierarchy, "the levels");
     v.field("solve", s.solve, "the method and its settings");
+    v.field("edits", s.edits,
+            "the file of an edit log: changes of this scene at given steps, which a run makes as it goes; null: none");
 }
 
 } // namespace plisse

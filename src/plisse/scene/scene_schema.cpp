@@ -141,9 +141,13 @@ public:
         field(key, value, limits, doc);
     }
     template <typename Value>
-    void required(const char* key, Value& value, const char* doc) {
-        add(key, TypeSchema::of(value, Limits{}), doc);
+    void required(const char* key, Value& value, const Limits& limits, const char* doc) {
+        add(key, TypeSchema::of(value, limits), doc);
         required_.push_back(key);
+    }
+    template <typename Value>
+    void required(const char* key, Value& value, const char* doc) {
+        required(key, value, Limits{}, doc);
     }
     template <typename Value>
     void alternative(const char* key, std::optional<Value>&, const char* doc) {
