@@ -38,6 +38,14 @@ std::vector<SavedFrame> read_index(const fs::path& folder) {
     return frames;
 }
 
+std::vector<std::string> read_body_names(const Json& scene) {
+    std::vector<std::string> names;
+    for (const char* kind : {"bodies", "obstacles"})
+        for (const Json& body : scene.value(kind, Json::array()))
+            names.push_back(body.value("name", fmt::format("body {}", names.size())));
+    return names;
+}
+
 /// Level and time of final.ply: those of the last frame, or of the report when no frames were saved.
 std::optional<SavedFrame> find_final(const fs::path& folder, const std::vector<SavedFrame>& frames) {
     SavedFrame last{0, 0, 0, "final", folder / "final.ply"};
@@ -83,6 +91,7 @@ SavedRun open_run(const fs::path& folder) {
         run.folder = folder;
         run.name = scene.value("name", folder.filename().string());
         run.body_count = static_cast<int>(scene.at("bodies").size());
+        run.body_names = read_body_names(scene);
         run.frames = read_index(folder);
         run.final_state = find_final(folder, run.frames);
         return run;

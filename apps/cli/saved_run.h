@@ -17,11 +17,12 @@ struct SavedFrame {
     std::filesystem::path file;
 };
 
-/// What a picture needs to know of a run's output folder.
+/// What pictures and exports need to know of a run's output folder.
 struct SavedRun {
     std::filesystem::path folder;
     std::string name;
     int body_count = 0;                    ///< the frames' bodies from this number on are obstacles
+    std::vector<std::string> body_names;   ///< of bodies, then of obstacles: what the frames' bodies are called
     std::vector<SavedFrame> frames;        ///< as they were saved
     std::optional<SavedFrame> final_state; ///< final.ply, where there is one
 

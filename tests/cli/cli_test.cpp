@@ -1,18 +1,12 @@
 #include <chrono>
-#include <regex>
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
-#include "program.h"
-#include "scene/temporary_folder.h"
+#include "cli_fixture.h"
 
 namespace plisse {
 namespace {
-
-using Json = nlohmann::json;
-namespace fs = std::filesystem;
 
 const std::string square_obj = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 3 2\nf 1 4 3\n";
 
@@ -27,24 +21,6 @@ std::string hung_sheet(const std::string& solve) {
 const std::string few_steps = R"("method": "direct", "duration": 0.3, "settle": false)";
 const std::string many_steps = R"("method": "direct", "time_step": 0.01, "duration": 2, "settle": false)";
 
-class Cli : public testing::Test {
-protected:
-    Outcome run(const std::vector<std::string>& arguments) { return Program(folder_.path(), arguments).wait(); }
-    std::string at(const std::string& file) const { return (folder_.path() / file).string(); }
-    void write(const std::string& file, const std::string& text) { write_text(folder_.path() / file, text); }
-    Json json_of(const std::string& file) { return Json::parse(read_text(folder_.path() / file)); }
-
-    void expect_unusable(const std::vector<std::string>& arguments, const std::string& fragment) {
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.code, 2) << outcome.err;
-        EXPECT_TRUE(std::regex_match(outcome.err, std::regex("plisse: error: [^\n]+: [^\n]+; [^\n]+\n")))
-            << outcome.err;
-        EXPECT_NE(outcome.err.find(fragment), std::string::npos) << outcome.err;
-    }
-
-    TemporaryFolder folder_;
-};
-
 TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
     expect_unusable({}, "command line: ");
     expect_unusable({"rum"}, "rum");
@@ -52,11 +28,9 @@ TEST_F(Cli, ArgumentsItCannotUseEndInTwo) {
     expect_unusable({"run", "scene.json", "-o", "x", "--levle", "1"}, "--levle");
     expect_unusable({"run", "scene.json", "-o", "x", "--threads", "many"}, "--threads");
     expect_unusable({"run", "scene.json", "-o", "x", "--progress", "loud"}, "--progress");
-    expect_unusable({"studio"}, "not supported in this version");
     expect_unusable({"bench", "cam"}, "plisse bench can");
     expect_unusable({"bench", "can", "--levels", "2"}, "rmtr");
     expect_unusable({"bench", "rmtr", "--scenario", "tent"}, "--scenario");
-    expect_unusable({"export", "x", "--format", "usd"}, "not supported in this version");
 }
 
 TEST_F(Cli, AnIntersectingStartIsRefusedWithItsPlacesAndShown) {

@@ -12,15 +12,19 @@ namespace {
 /// Each folder may include those before it.
 constexpr std::array<std::string_view, 15> order = {"base",     "linalg",   "geometry",  "spatial", "mesh",
                                                     "transfer", "decimate", "subdivide", "energy",  "contact",
-                                                    "solve",    "model",    "drive",     "scene", "steer"};
-/// Beside the order: nothing includes it, and it includes these only.
-constexpr std::string_view aside = "picture";
+                                                    "solve",    "model",    "drive",     "scene",   "steer"};
+/// Beside the order: nothing includes them, and they include these only.
+constexpr std::array<std::string_view, 2> aside = {"picture", "exports"};
 constexpr std::array<std::string_view, 2> seen_from_aside = {"base", "mesh"};
+
+bool is_aside(std::string_view folder) {
+    return std::find(aside.begin(), aside.end(), folder) != aside.end();
+}
 
 bool may_include(std::string_view from, std::string_view to) {
     if (from == to)
         return true;
-    if (from == aside)
+    if (is_aside(from))
         return std::find(seen_from_aside.begin(), seen_from_aside.end(), to) != seen_from_aside.end();
     const auto from_place = std::find(order.begin(), order.end(), from);
     return std::find(order.begin(), from_place, to) != from_place;
@@ -29,7 +33,7 @@ bool may_include(std::string_view from, std::string_view to) {
 } // namespace
 
 bool is_known_folder(const std::string& folder) {
-    return folder == aside || std::find(order.begin(), order.end(), folder) != order.end();
+    return is_aside(folder) || std::find(order.begin(), order.end(), folder) != order.end();
 }
 
 std::vector<std::string> wrong_includes(const std::string& folder, std::string_view text) {

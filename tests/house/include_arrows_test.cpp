@@ -36,6 +36,8 @@ TEST(IncludeArrows, BadOnesAreCaught) {
     EXPECT_EQ(wrong_includes("solve", "#include <plisse/model/model.h>\n").size(), 1U);
     EXPECT_EQ(wrong_includes("scene", "#include <plisse/picture/draw.h>\n").size(), 1U);
     EXPECT_EQ(wrong_includes("picture", "#include <plisse/spatial/box.h>\n").size(), 1U);
+    EXPECT_EQ(wrong_includes("exports", "#include <plisse/scene/scene.h>\n").size(), 1U);
+    EXPECT_EQ(wrong_includes("exports", "#include <plisse/picture/draw.h>\n").size(), 1U);
     EXPECT_EQ(wrong_includes("base", "int a;\n  #  include <plisse/linalg/newton_system.h> // why\n").size(), 1U);
     EXPECT_EQ(wrong_includes("drive", "#include \"../scene/scene.h\"\n").size(), 1U);
     EXPECT_EQ(wrong_includes("drive", "#include <apps/cli/main.h>\n").size(), 1U);

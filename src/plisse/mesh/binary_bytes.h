@@ -4,9 +4,20 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace plisse {
+
+/// Appends a number as binary files hold it, its lowest byte first.
+template <typename T>
+void put_little_endian(std::string& out, T value) {
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if constexpr (std::endian::native == std::endian::big)
+        std::reverse(raw, raw + sizeof(T));
+    out.append(raw, sizeof(T));
+}
 
 /// Walks the numbers of a binary file.
 class BinaryBytes {

@@ -1,6 +1,5 @@
 #include <plisse/mesh/write_ply.h>
 
-#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <cstdint>
@@ -11,6 +10,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <plisse/mesh/binary_bytes.h>
+
 namespace plisse {
 
 namespace {
@@ -18,24 +19,13 @@ namespace {
 using Domain = MeshAttribute::Domain;
 using Number = MeshAttribute::Number;
 
-template <typename T>
-void put(std::string& out, T value) {
-    char raw[sizeof(T)];
-    std::memcpy(raw, &value, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big)
-        for (std::size_t k = sizeof(T); k > 0; --k)
-            out += raw[k - 1];
-    else
-        out.append(raw, sizeof(T));
-}
-
 void put_number(std::string& out, Number number, double value) {
     if (number == Number::real)
-        put(out, value);
+        put_little_endian(out, value);
     else if (number == Number::int32)
-        put(out, static_cast<std::int32_t>(value));
+        put_little_endian(out, static_cast<std::int32_t>(value));
     else
-        put(out, static_cast<std::uint8_t>(value));
+        put_little_endian(out, static_cast<std::uint8_t>(value));
 }
 
 const char* type_name(Number number) {
@@ -75,9 +65,9 @@ void put_row(std::string& out, const MeshAttribute& attribute, int row) {
     const int width = row_width(attribute);
     if (is_list(attribute)) {
         if (has_long_list(attribute))
-            put(out, static_cast<std::int32_t>(width));
+            put_little_endian(out, static_cast<std::int32_t>(width));
         else
-            put(out, static_cast<std::uint8_t>(width));
+            put_little_endian(out, static_cast<std::uint8_t>(width));
     }
     const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k)
@@ -113,16 +103,16 @@ std::string ply_bytes(const TriangleMesh& mesh, std::span<const int> face_body) 
 
     for (int v = 0; v < mesh.vertex_count(); ++v) {
         for (int k = 0; k < 3; ++k)
-            put(out, mesh.positions(k, v));
+            put_little_endian(out, mesh.positions(k, v));
         for (const MeshAttribute* attribute : of_vertices)
             put_row(out, *attribute, v);
     }
     for (int f = 0; f < mesh.face_count(); ++f) {
-        put(out, std::uint8_t{3});
+        put_little_endian(out, std::uint8_t{3});
         for (int corner : mesh.faces[static_cast<std::size_t>(f)])
-            put(out, static_cast<std::int32_t>(corner));
+            put_little_endian(out, static_cast<std::int32_t>(corner));
         if (!face_body.empty())
-            put(out, static_cast<std::int32_t>(face_body[static_cast<std::size_t>(f)]));
+            put_little_endian(out, static_cast<std::int32_t>(face_body[static_cast<std::size_t>(f)]));
         for (const MeshAttribute* attribute : of_faces)
             put_row(out, *attribute, f);
     }
