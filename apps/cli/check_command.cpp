@@ -8,6 +8,7 @@
 #include <plisse/mesh/check_mesh.h>
 #include <plisse/mesh/read_mesh.h>
 #include <plisse/scene/load_part.h>
+#include <plisse/scene/mesh_check_json.h>
 #include <plisse/spatial/intersections.h>
 
 #include "exit_status.h"
@@ -68,22 +69,6 @@ std::vector<Meeting> find_meetings(const std::vector<CheckedMesh>& meshes) {
 bool all_usable(const std::vector<CheckedMesh>& meshes, const std::vector<Meeting>& meetings) {
     return meetings.empty() &&
            std::all_of(meshes.begin(), meshes.end(), [](const CheckedMesh& mesh) { return mesh.check.usable(); });
-}
-
-Json counts_json(const MeshCheck& check) {
-    return {{"vertices", check.vertices},
-            {"faces", check.faces},
-            {"components", check.components},
-            {"boundary_loops", check.boundary_loops},
-            {"euler_characteristic", check.euler_characteristic},
-            {"sheets", check.sheets},
-            {"unreferenced_vertices", check.unreferenced_vertices},
-            {"non_manifold_edges", check.non_manifold_edges.size()},
-            {"inconsistent_edges", check.inconsistent_edges.size()},
-            {"non_manifold_vertices", check.non_manifold_vertices.size()},
-            {"degenerate_faces", check.degenerate_faces.size()},
-            {"duplicate_faces", check.duplicate_faces.size()},
-            {"intersecting_face_pairs", check.intersecting_faces.size()}};
 }
 
 Json mesh_json(const CheckedMesh& mesh) {

@@ -73,7 +73,8 @@ RunResult run_ready(const Scene& scene, const ReadyModel& ready, const RunOption
 }
 
 /// Runs into the folder. When that throws, the folder says so, or vanishes when nothing could be begun.
-RunResult run_into(RunFolder& folder, const Scene& scene, const ReadyModel& ready, const RunArguments& arguments, Context& context) {
+RunResult run_into(RunFolder& folder, const Scene& scene, const ReadyModel& ready, const RunArguments& arguments,
+                   Context& context) {
     std::optional<HierarchyCache> cache;
     if (const auto caches = HierarchyCache::default_folder(); caches && !arguments.no_cache)
         cache.emplace(*caches, context);

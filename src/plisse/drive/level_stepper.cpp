@@ -265,8 +265,7 @@ LevelStepper::Outcome LevelStepper::step_timeline(double duration) {
     const double t_before = std::min(progress_.step * h, duration);
     const double t = std::min((progress_.step + 1) * h, duration);
     const VecX before = x_;
-    const VecX motion =
-        progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
+    const VecX motion = progress_.velocity.cols() > 0 ? VecX(h * as_vector(progress_.velocity)) : VecX::Zero(x_.size());
     begin_step(t, h, settings_.dynamics ? VecX(x_ + motion) : x_);
     extrapolate(motion);
     const NewtonSummary summary = solve_pressed_step(t, settings_.tolerance, "preview", iteration_cap());

@@ -25,14 +25,15 @@ bool run_level(StagedRun& run, const SolveSettings& solve) {
                      fmt::format("a step of the timeline {} ({})",
                                  outcome == Outcome::stalled ? "stalled" : "was cut short", stepper.trouble()));
     }
-    const Outcome outcome = solve.settle                  ? stepper.settle(run.duration())
+    const Outcome outcome = solve.settle                 ? stepper.settle(run.duration())
                             : level == run.first_level() ? Outcome::done
                                                          : stepper.step_once(run.duration());
     if (outcome == Outcome::cancelled)
         return false;
     if (outcome != Outcome::done && (solve.settle || level == run.last_level()))
-        run.fail(RunStatus::not_converged, fmt::format("level {} did not reach equilibrium{}", level,
-                                                       stepper.trouble().empty() ? "" : " (" + stepper.trouble() + ")"));
+        run.fail(RunStatus::not_converged,
+                 fmt::format("level {} did not reach equilibrium{}", level,
+                             stepper.trouble().empty() ? "" : " (" + stepper.trouble() + ")"));
     run.conclude_level();
     return true;
 }

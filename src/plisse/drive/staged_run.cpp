@@ -67,8 +67,7 @@ StagedRun::StagedRun(const Model& model, const RunOptions& options, Recorder& re
         return;
     }
     log_.publish();
-    Checkpoint progress = fresh_progress(first_level_, discretization_.start(first_level_));
-    progress.t = 0;
+    const Checkpoint progress = fresh_progress(first_level_, 0, discretization_.start(first_level_));
     check_start(progress.positions);
     const int input_level = discretization_.hierarchy().input_level();
     check_limits(input_level, discretization_.start(input_level));
@@ -125,10 +124,10 @@ void StagedRun::check_limits(int level, const Positions& x) const {
                          : "use fewer levels, more coarsest_vertices, or method `direct`");
 }
 
-Checkpoint StagedRun::fresh_progress(int level, const Positions& x) const {
+Checkpoint StagedRun::fresh_progress(int level, double t, const Positions& x) const {
     Checkpoint progress;
     progress.level = level;
-    progress.t = duration_;
+    progress.t = t;
     progress.positions = x;
     progress.settle_time_step = model().solve.time_step;
     progress.settle_tolerance = model().solve.tolerance;
@@ -148,7 +147,7 @@ bool StagedRun::bring_to_thickness() {
 void StagedRun::conclude_level() {
     stepper_->measure();
     log_.level_report(level()).reactions = reactions();
-    log_.frame(level(), duration_, level() == last_level_ ? "final" : "settle", stepper_->positions());
+    log_.frame(level(), time(), level() == last_level_ ? "final" : "settle", stepper_->positions());
     Checkpoint& progress = stepper_->progress();
     progress.settled = true;
     progress.positions = stepper_->positions();
@@ -158,7 +157,7 @@ void StagedRun::conclude_level() {
 bool StagedRun::refine() {
     const Checkpoint& coarse = stepper_->progress();
     RefineResult refined =
-        plisse::refine(discretization_, level(), stepper_->positions(), duration_, context_, coarse.stiffness_factor);
+        plisse::refine(discretization_, level(), stepper_->positions(), time(), context_, coarse.stiffness_factor);
     if (refined.cancelled)
         return false;
     report().refinements.push_back(refined.report);
@@ -166,8 +165,8 @@ bool StagedRun::refine() {
         fail(RunStatus::not_converged, refined.message);
         return false;
     }
-    log_.frame(level() + 1, duration_, "refine", refined.positions);
-    Checkpoint progress = fresh_progress(level() + 1, refined.positions);
+    log_.frame(level() + 1, time(), "refine", refined.positions);
+    Checkpoint progress = fresh_progress(level() + 1, time(), refined.positions);
     progress.previews = coarse.previews;
     progress.previews.push_back(stepper_->positions());
     progress.stiffness_factor = coarse.stiffness_factor;
@@ -191,7 +190,7 @@ void StagedRun::finish() {
 void StagedRun::find_lagging() {
     const int level = this->level();
     const HierarchyLevel& mesh = discretization_.mesh(level);
-    const Positions script = discretization_.script(level, duration_);
+    const Positions script = discretization_.script(level, time());
     const double allowed = 1e-4 * bounding_box(mesh.rest).diagonal();
     std::vector<Lag> lags(model().handles.size() + model().obstacles.size());
     for (int v = 0; v < script.cols(); ++v) {

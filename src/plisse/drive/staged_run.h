@@ -19,7 +19,8 @@ public:
     int first_level() const { return first_level_; }
     int last_level() const { return last_level_; }
     int level() const { return stepper_->progress().level; }
-    double duration() const { return duration_; } ///< s of the timeline that are run
+    double duration() const { return duration_; }          ///< s of the timeline that are run
+    double time() const { return stepper_->progress().t; } ///< s of the timeline, of the present state
     LevelStepper& stepper() { return *stepper_; }
     RunReport& report() { return log_.report(); }
     RunLog& log() { return log_; }
@@ -29,8 +30,8 @@ public:
     bool bring_to_thickness();
     /// Ends the level at its last step: measures it, and saves a frame and a checkpoint.
     void conclude_level();
-    /// Takes the last state of the level to the next one, and goes on there. False when it is cancelled or not
-    /// complete; then the run stays where it was.
+    /// Takes the last state of the level to the next one, and goes on there at the same time of the timeline. False
+    /// when it is cancelled or not complete; then the run stays where it was.
     bool refine();
     /// Ends the run after the last level: what became of scripts and previews goes into the report.
     void finish();
@@ -54,7 +55,7 @@ private:
     void find_lagging();
     void find_preview_distances();
     std::vector<Reaction> reactions();
-    Checkpoint fresh_progress(int level, const Positions& x) const;
+    Checkpoint fresh_progress(int level, double t, const Positions& x) const;
     const Model& model() const { return discretization_.model(); }
 
     Recorder& recorder_;

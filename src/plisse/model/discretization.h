@@ -31,8 +31,8 @@ public:
     /// and attributes are left out.
     const Model& model() const { return model_; }
     /// Puts another model in its place that differs in nothing but parameters: materials, pressures, motions that are
-    /// the same at t = 0, values of loads, pulls, gravity, contact and the solver's settings. Problems and steppers made
-    /// before must not be used any more.
+    /// the same at t = 0, values of loads, pulls, gravity, contact and the solver's settings. Problems and steppers
+    /// made before must not be used any more.
     void set_model(Model model) { model_ = std::move(model); }
     /// Of a subdivided mesh the hierarchy and its counts.
     const DecimationResult& decimation() const { return decimation_; }

@@ -474,6 +474,16 @@ double ShellProblem::min_gap(const VecX& x) {
     return contact_->min_gap(level_positions(x));
 }
 
+VecX ShellProblem::vertex_gaps(const VecX& x) {
+    VecX gaps = VecX::Constant(vertex_count(), std::numeric_limits<double>::quiet_NaN());
+    for (const ActivePair& pair : contact_->active_pairs(level_positions(x))) {
+        const double gap = std::sqrt(pair.separation.squared_distance) - std::sqrt(pair.parameters.least_squared);
+        for (int v : pair.vertices)
+            gaps[v] = std::fmin(gaps[v], gap); // a number rather than NaN
+    }
+    return gaps;
+}
+
 TightestPair ShellProblem::tightest_pair(const VecX& x) {
     const Positions& points = level_positions(x);
     const auto& prescribed = discretization_.layout(level_).prescribed;

@@ -91,6 +91,8 @@ public:
     /// forces are round-off.
     double residual(const VecX& x);
     double min_gap(const VecX& x);
+    /// Of each vertex of the level, over the pairs that repel; NaN where there is none.
+    VecX vertex_gaps(const VecX& x);
     /// Of the pairs with an unknown that is free.
     TightestPair tightest_pair(const VecX& x);
     /// As Contact's.

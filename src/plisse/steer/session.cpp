@@ -21,6 +21,7 @@ struct Session::Snapshot {
     EditLog edits;
     Checkpoint state;
     bool concluded;
+    Marks marks;
 };
 
 Session::Session(Scene scene, EditLog made, const RunOptions& options, Recorder& recorder, Context& context)
@@ -56,6 +57,7 @@ void Session::take(std::unique_ptr<StagedRun> fresh, const Scene& scene) {
     first_ = std::make_shared<const Scene>(scene_);
     edits_.clear();
     concluded_ = false;
+    marks = {};
 }
 
 int Session::steps() {
@@ -69,6 +71,7 @@ bool Session::timeline_is_over() {
 Session::StepEnd Session::step() {
     if (concluded_)
         return StepEnd::at_rest;
+    redo_.clear();
     const Checkpoint before = run_->state();
     const auto give_back = [&](StepEnd end) {
         run_->restore(before);
@@ -87,9 +90,9 @@ Session::StepEnd Session::step() {
     const bool only_once = !solve.settle && run_->level() > run_->first_level();
     LevelStepper::Outcome outcome = LevelStepper::Outcome::done;
     if (solve.settle)
-        outcome = stepper.step_settling(run_->duration());
+        outcome = stepper.step_settling(run_->time());
     else if (only_once)
-        outcome = stepper.step_once(run_->duration());
+        outcome = stepper.step_once(run_->time());
     if (outcome == LevelStepper::Outcome::cancelled)
         return give_back(StepEnd::cancelled);
     if (outcome == LevelStepper::Outcome::stalled)
@@ -184,7 +187,7 @@ void Session::remember(const std::string& gesture) {
 }
 
 Session::Snapshot Session::snapshot() {
-    return {first_, scene_, edits_, run_->state(), concluded_};
+    return {first_, scene_, edits_, run_->state(), concluded_, marks};
 }
 
 void Session::restore(const Snapshot& snapshot) {
@@ -199,6 +202,7 @@ void Session::restore(const Snapshot& snapshot) {
     scene_ = snapshot.scene;
     edits_ = snapshot.edits;
     concluded_ = snapshot.concluded;
+    marks = snapshot.marks;
     gesture_.clear();
 }
 

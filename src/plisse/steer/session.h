@@ -39,6 +39,7 @@ public:
     /// Whether the level has ended, in equilibrium where it was to settle.
     bool is_at_rest() const { return concluded_; }
 
+    /// The next step of the level. What was undone before it cannot be redone.
     StepEnd step();
     /// Changes the scene. The run goes on where it can (can_go_on), else it begins anew; true says that it goes on.
     /// Throws InputError, and nothing has changed. gesture: edits of the same one are undone together; "" stands alone.
@@ -51,6 +52,12 @@ public:
     bool back_to_preview();
     /// Begins anew with the scene as it is now.
     void restart();
+
+    /// How much of what has been sent out belongs to the state: whoever steers sets it, and undoing brings it back.
+    struct Marks {
+        std::size_t frames = 0, samples = 0;
+    };
+    Marks marks;
 
     bool can_undo() const { return !undo_.empty(); }
     bool can_redo() const { return !redo_.empty(); }
