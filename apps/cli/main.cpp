@@ -5,11 +5,16 @@
 #include <plisse/base/error.h>
 #include <plisse/scene/json_cursor.h>
 
+#ifdef PLISSE_HAS_STUDIO
+#include <studio/studio_command.h>
+#endif
+
 #include "bench_command.h"
 #include "check_command.h"
 #include "exit_status.h"
+#include "export_command.h"
 #include "hierarchy_command.h"
-#include "later_commands.h"
+#include "missing_studio_command.h"
 #include "prolong_command.h"
 #include "render_command.h"
 #include "report_command.h"
@@ -41,9 +46,14 @@ void add_commands(CLI::App& app) {
     plisse::add_prolong_command(app);
     plisse::add_render_command(app);
     plisse::add_report_command(app);
+    plisse::add_export_command(app);
     plisse::add_schema_command(app);
     plisse::add_bench_command(app);
-    plisse::add_later_commands(app);
+#ifdef PLISSE_HAS_STUDIO
+    plisse::add_studio_command(app);
+#else
+    plisse::add_missing_studio_command(app);
+#endif
 }
 
 /// Throws for a first word that is neither an option nor a subcommand; the parser would only miss a subcommand.

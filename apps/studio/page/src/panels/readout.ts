@@ -1,0 +1,70 @@
+// The numbers of what is shown: level, vertices, time, speed.
+
+import { element } from '../dom';
+import { words } from '../scale';
+import type { State, Store } from '../store';
+
+const stateNames: Record<string, string> = {
+    empty: '', building: 'building', idle: 'paused', playing: 'running', refining: 'refining', at_rest: 'at rest', failed: 'failed',
+};
+
+export interface Measures {
+    volume: number | null;
+    /** Milliseconds from a change of a parameter to the first picture after it. */
+    editShown: number | null;
+    /** As the page has seen them come. */
+    stepsPerSecond: number | null;
+    vertices: number;
+    level: number;
+    detail: boolean;
+}
+
+export class Readout {
+    readonly root = element('div', { class: 'readout', 'aria-label': 'State' });
+    private readonly level = element('strong', { 'data-readout': 'level' });
+    private readonly state = element('span', { class: 'state', 'data-readout': 'state' });
+    private readonly rest = element('span', { class: 'quiet' });
+    private readonly cells = new Map<string, HTMLElement>();
+
+    constructor(store: Store) {
+        for (const name of ['vertices', 'time', 'speed', 'change', 'volume']) {
+            const cell = element('span', { 'data-readout': name });
+            this.cells.set(name, cell);
+            this.rest.append(cell);
+        }
+        this.root.append(element('span', { class: 'readout-head' }, this.level, this.state), this.rest);
+        store.watch((state) => [state.status, state.frame, state.unusable], (state) => this.showStatus(state));
+    }
+
+    private set(name: string, text: string): void {
+        const cell = this.cells.get(name)!;
+        cell.textContent = text;
+        cell.hidden = text === '';
+    }
+
+    private showStatus(state: State): void {
+        const { status } = state;
+        this.root.hidden = !status || status.state === 'empty' || state.unusable !== null;
+        if (!status) return;
+        this.root.dataset.state = state.frame === null ? status.state : 'frame';
+        this.state.textContent = state.frame === null ? (stateNames[status.state] ?? status.state) : 'saved frame';
+        if (state.frame === null) this.set('time', `t ${words(status.t)} of ${words(status.duration)} s`);
+        else this.set('time', `t ${words(state.frames[state.frame]?.t)} s`);
+        this.levels = status.levels;
+        this.set('speed', status.state === 'playing' && status.steps_per_second ? `${words(status.steps_per_second, 2)} steps/s` : '');
+    }
+
+    private levels = 1;
+
+    showMeasures(measures: Measures): void {
+        const name = measures.level + 1 >= this.levels ? ' · your mesh' : measures.level === 0 ? ' · preview' : '';
+        this.level.textContent = measures.detail ? `Level ${measures.level} shown on the finest mesh` : `Level ${measures.level} of ${this.levels - 1}${name}`;
+        this.root.dataset.level = String(measures.level);
+        this.root.dataset.volume = measures.volume === null ? '' : String(measures.volume);
+        this.root.dataset.steps = measures.stepsPerSecond === null ? '' : measures.stepsPerSecond.toFixed(2);
+        this.root.dataset.change = measures.editShown === null ? '' : measures.editShown.toFixed(0);
+        this.set('vertices', `${measures.vertices.toLocaleString('en')} vertices`);
+        this.set('change', measures.editShown === null ? '' : `change seen in ${measures.editShown.toFixed(0)} ms`);
+        this.set('volume', measures.volume === null ? '' : `encloses ${words(measures.volume * 1000)} L`);
+    }
+}
