@@ -94,8 +94,9 @@ TEST(Schema, ListsEveryKeyOfTheContract) {
     const Json schema = scene_schema();
     const Json& properties = schema["properties"];
     using Set = std::set<std::string>;
-    EXPECT_EQ(keys_of(properties), (Set{"plisse", "name", "bodies", "obstacles", "handles", "loads", "gravity",
-                                        "contact", "hierarchy", "solve"}));
+    EXPECT_EQ(keys_of(properties), (Set{"plisse", "name", "bodies", "obstacles", "handles", "loads", "pulls", "gravity",
+                                        "contact", "hierarchy", "solve", "edits"}));
+    EXPECT_EQ(keys_of(properties["pulls"]["items"]["properties"]), (Set{"name", "body", "stiffness", "points"}));
     EXPECT_EQ(keys_of(properties["bodies"]["items"]["properties"]),
               (Set{"name", "mesh", "transform", "material", "pressure", "rest", "start", "warp"}));
     EXPECT_EQ(keys_of(properties["obstacles"]["items"]["properties"]),
