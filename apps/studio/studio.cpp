@@ -14,6 +14,8 @@
 #include <plisse/steer/edited_scene.h>
 #include <plisse/steer/replay.h>
 
+#include "scene_files.h"
+
 namespace plisse::studio {
 
 namespace {
@@ -502,6 +504,10 @@ void Studio::perform(ClientId, const Step&) {
 }
 
 void Studio::set(const std::vector<std::pair<std::string, Json>>& values, const std::string& gesture) {
+    Scene edited = session().scene();
+    for (const auto& [pointer, value] : values)
+        edited = edited_scene(edited, pointer, value);
+    expect_no_other_files(edited, files_of(session().scene()), folder_.files());
     const bool goes_on = session().set(values, gesture);
     message_.clear();
     if (goes_on) {

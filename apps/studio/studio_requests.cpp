@@ -12,6 +12,7 @@
 #include <plisse/scene/read_scene.h>
 #include <plisse/spatial/box.h>
 
+#include "scene_files.h"
 #include "studio.h"
 
 namespace plisse::studio {
@@ -139,6 +140,7 @@ HttpAnswer Studio::open_mesh(const std::map<std::string, std::string>& query, co
 
 HttpAnswer Studio::open_scene_text(const std::string& text) {
     const Scene scene = parse_scene("the scene", text, folder_.files());
+    expect_no_other_files(scene, {}, folder_.files());
     begin(scene, scene.name, State::idle);
     return ok_answer();
 }
