@@ -1,5 +1,7 @@
 #include "board.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

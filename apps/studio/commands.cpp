@@ -180,12 +180,12 @@ ShowFrame read_frame(Fields& fields) {
 }
 
 Export read_export(Fields& fields) {
-    constexpr Word<ExportFormat> formats[] = {{"obj", ExportFormat::obj},   {"ply", ExportFormat::ply},
-                                              {"gltf", ExportFormat::gltf}, {"usd", ExportFormat::usd},
-                                              {"pvd", ExportFormat::pvd},   {"pc2", ExportFormat::pc2}};
+    constexpr Word<AnimationFormat> formats[] = {{"obj", AnimationFormat::obj},   {"ply", AnimationFormat::ply},
+                                                 {"gltf", AnimationFormat::gltf}, {"usd", AnimationFormat::usd},
+                                                 {"pvd", AnimationFormat::pvd},   {"pc2", AnimationFormat::pc2}};
     constexpr Word<bool> extents[] = {{"animation", true}, {"state", false}};
     Export result;
-    result.format = fields.word<ExportFormat>("format", formats);
+    result.format = fields.word<AnimationFormat>("format", formats);
     if (fields.has("what"))
         result.animation = fields.word<bool>("what", extents);
     return result;

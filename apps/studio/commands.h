@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <plisse/base/types.h>
+#include <plisse/exports/formats.h>
 
 namespace plisse::studio {
 
@@ -61,9 +62,8 @@ struct Save {
     std::string name; ///< a plain name
 };
 
-enum class ExportFormat { obj, ply, gltf, usd, pvd, pc2 };
 struct Export {
-    ExportFormat format = ExportFormat::obj;
+    AnimationFormat format = AnimationFormat::obj;
     bool animation = true; ///< else the state alone
 };
 

@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 
 #include <plisse/decimate/level_attributes.h>
-#include <plisse/exports/formats.h>
 
 extern char** environ;
 
@@ -17,38 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-AnimationFormat animation_format_of(ExportFormat format) {
-    switch (format) {
-    case ExportFormat::obj:
-        return AnimationFormat::obj;
-    case ExportFormat::ply:
-        return AnimationFormat::ply;
-    case ExportFormat::gltf:
-        return AnimationFormat::gltf;
-    case ExportFormat::usd:
-        return AnimationFormat::usd;
-    case ExportFormat::pvd:
-        return AnimationFormat::pvd;
-    case ExportFormat::pc2:
-        return AnimationFormat::pc2;
-    }
-    throw std::logic_error("no such format");
-}
-
 /// What the format's main file or folder is called.
-std::string main_name(const std::string& name, ExportFormat format, bool one_state) {
+std::string main_name(const std::string& name, AnimationFormat format, bool one_state) {
     switch (format) {
-    case ExportFormat::obj:
+    case AnimationFormat::obj:
         return name + (one_state ? ".obj" : "-obj");
-    case ExportFormat::ply:
+    case AnimationFormat::ply:
         return name + (one_state ? ".ply" : "-ply");
-    case ExportFormat::gltf:
+    case AnimationFormat::gltf:
         return name + ".glb";
-    case ExportFormat::usd:
+    case AnimationFormat::usd:
         return name + ".usda";
-    case ExportFormat::pvd:
+    case AnimationFormat::pvd:
         return name + ".pvd";
-    case ExportFormat::pc2:
+    case AnimationFormat::pc2:
         return name + ".pc2";
     }
     throw std::logic_error("no such format");
@@ -101,12 +82,11 @@ void pack(const fs::path& folder, const std::vector<fs::path>& paths, const fs::
 
 } // namespace
 
-std::string export_states(const fs::path& folder, const std::string& name, ExportFormat format,
+std::string export_states(const fs::path& folder, const std::string& name, AnimationFormat format,
                           const Discretization& discretization, const std::vector<Board::SavedFrame>& states) {
-    const AnimationFormat kind = animation_format_of(format);
     const fs::path path = folder / main_name(name, format, states.size() == 1);
-    const std::vector<fs::path> made = exported_files(kind, path);
-    write_animation(kind, path, animation_of(name, discretization, states));
+    const std::vector<fs::path> made = exported_files(format, path);
+    write_animation(format, path, animation_of(name, discretization, states));
     if (made.size() == 1 && !fs::is_directory(path))
         return path.filename().string();
     const std::string archive = path.filename().string() + ".tar";

@@ -93,7 +93,6 @@ Studio::~Studio() {
 }
 
 void Studio::start(Server& server) {
-    server_ = &server;
     board_.connect(server);
     set_state(State::empty);
     thread_ = std::thread([this] { work(); });

@@ -114,7 +114,6 @@ private:
     double steps_per_second();
 
     Board board_;
-    Server* server_ = nullptr;
     Projector projector_;
     SessionFolder folder_;
     std::optional<HierarchyCache> cache_;

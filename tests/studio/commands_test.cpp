@@ -82,7 +82,7 @@ TEST(Commands, EveryMessageOfTheProtocolIsRead) {
     EXPECT_EQ(expect_command<ShowFrame>(good_messages[18]).index, std::nullopt);
     EXPECT_EQ(expect_command<Save>(good_messages[19]).name, "drape");
     const Export animation = expect_command<Export>(good_messages[20]);
-    EXPECT_EQ(animation.format, ExportFormat::gltf);
+    EXPECT_EQ(animation.format, AnimationFormat::gltf);
     EXPECT_TRUE(animation.animation);
     EXPECT_FALSE(expect_command<Export>(R"({"type": "export", "format": "pc2", "what": "state"})").animation);
 }

@@ -17,9 +17,9 @@ public:
     UnfinishedFiles(const UnfinishedFiles&) = delete;
     UnfinishedFiles& operator=(const UnfinishedFiles&) = delete;
 
-    /// Where to write the file for now.
+    /// Where to write the file until it is whole.
     std::filesystem::path add_file(const std::filesystem::path& path);
-    /// A new folder to fill for now. It takes the place of one that exists.
+    /// A new folder to fill until it is whole. It takes the place of one that exists.
     std::filesystem::path add_folder(const std::filesystem::path& path);
     /// A file for the time of writing only.
     std::filesystem::path add_scratch(const std::filesystem::path& beside);
