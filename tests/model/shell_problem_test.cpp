@@ -22,6 +22,8 @@ Model loaded_model(BendingOn bending_on, ProlongationOperator kind, BendingModel
     append_part(model, sphere_mesh(0.1, 0.04), Vec3(0, -0.205, 0), ball.vertices, ball.faces);
     model.obstacles.push_back(ball);
     model.loads.push_back({Load::Kind::force, 0, {0, 1, 2}, Track<Vec3>(Vec3(0.1, 0.2, -0.3))});
+    model.pulls.push_back(
+        {"pull", 0, 300, {{5, Track<Vec3>(Vec3(0.1, 0.1, 0))}, {40, Track<Vec3>(Vec3(0, 0.1, 0.1))}}});
     model.contact.distance = 8e-3;
     model.hierarchy = {3, 60, kind, bending_on};
     return model;
@@ -107,6 +109,7 @@ TEST(ShellProblem, RecoversRestAndFeelsNothingThereOnEveryLevel) {
     Model model = loaded_model(BendingOn::finest, ProlongationOperator::shell);
     model.bodies[0].pressure = Track<double>(0);
     model.loads.clear();
+    model.pulls.clear();
     model.gravity = Track<Vec3>(Vec3::Zero());
     const Discretization discretization(model, 3, context);
     const double scale = model.bodies[0].material.youngs_modulus * model.bodies[0].material.thickness * 0.1;
