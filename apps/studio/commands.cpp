@@ -137,6 +137,12 @@ private:
     std::set<std::string> asked_;
 };
 
+OpenScene read_open(Fields& fields) {
+    if (fields.has("file"))
+        return {"", fields.plain_name("file")};
+    return {fields.plain_name("gallery"), ""};
+}
+
 SetValues read_set(Fields& fields) {
     SetValues set;
     if (fields.has("gesture"))
@@ -200,7 +206,7 @@ using Reader = std::function<Command(Fields&)>;
 
 const std::map<std::string, Reader, std::less<>>& readers() {
     static const std::map<std::string, Reader, std::less<>> all = {
-        {"open", [](Fields& fields) { return OpenScene{fields.plain_name("gallery")}; }},
+        {"open", read_open},
         {"play", read_plain<Play>},
         {"pause", read_plain<Pause>},
         {"step", read_plain<Step>},

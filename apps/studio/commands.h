@@ -13,8 +13,10 @@
 
 namespace plisse::studio {
 
+/// One of the two is given, the other empty.
 struct OpenScene {
-    std::string gallery; ///< its id, a plain name
+    std::string gallery; ///< id of a scene of the gallery, a plain name
+    std::string file;    ///< a scene that the session has saved, a plain name
 };
 struct Play {};
 struct Pause {};

@@ -13,7 +13,6 @@ namespace plisse::studio {
 
 namespace {
 
-constexpr const char* cookie_name = "plisse_token";
 constexpr const char* session_path = "/api/session";
 constexpr int uploads_at_a_time = 2;
 /// How long a refused request may go on to send: were it cut off at once, its sender would not see the answer.
@@ -136,7 +135,7 @@ const char* HttpConnection::objection() const {
     const auto shown = target_.query.find("token");
     const bool is_allowed = target_.path == "/" && shown != target_.query.end()
                                 ? is_same_secret(shown->second, core_.options.token)
-                                : has_cookie(field(http::field::cookie), cookie_name, core_.options.token);
+                                : has_cookie(field(http::field::cookie), cookie_name(core_.port), core_.options.token);
     return is_allowed ? nullptr : "open the address that plisse studio has printed";
 }
 
@@ -258,7 +257,7 @@ http::response<Body> HttpConnection::prepare(const HttpAnswer& answer) const {
                      "attachment; filename=\"" + safe_download_name(answer.download_name) + "\"");
     if (sets_cookie_)
         response.set(http::field::set_cookie,
-                     std::string(cookie_name) + "=" + core_.options.token + "; Path=/; HttpOnly; SameSite=Strict");
+                     cookie_name(core_.port) + "=" + core_.options.token + "; Path=/; HttpOnly; SameSite=Strict");
     return response;
 }
 

@@ -83,6 +83,10 @@ std::optional<Target> parse_target(std::string_view text) {
     return target;
 }
 
+std::string cookie_name(std::uint16_t port) {
+    return "plisse_token_" + std::to_string(port);
+}
+
 bool has_cookie(std::string_view field, std::string_view name, std::string_view secret) {
     while (!field.empty()) {
         std::string_view value = take_until(field, ';');

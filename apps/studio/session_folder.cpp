@@ -1,6 +1,8 @@
 #include "session_folder.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -13,23 +15,47 @@ namespace plisse::studio {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+std::string edits_name(const std::string& name) {
+    return name + ".edits.json";
+}
+
+/// Whether there is a file with other bytes.
+bool is_other_file(const fs::path& path, const std::string& bytes) {
+    if (!fs::exists(fs::symlink_status(path)))
+        return false;
+    std::ifstream stream(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {}) != bytes;
+}
+
+} // namespace
+
 std::vector<std::string> SessionFolder::save(const std::string& name, const Scene& first_scene,
                                              const EditLog& edits) const {
-    SceneCopy copy = copy_scene(first_scene);
+    SceneCopy copy = copy_scene(first_scene, is_taken());
     fs::create_directories(files() / "meshes");
     for (const SceneCopy::MeshBytes& mesh : copy.meshes)
         write_file_atomically(files() / mesh.file, mesh.bytes);
-    std::vector<std::string> names{name + ".json", name + ".edits.json"};
-    write_file_atomically(files() / names[1], edit_log_text(edits));
-    copy.scene.edits = names[1];
-    write_file_atomically(files() / names[0], copy.text());
-    return names;
+    save_edits(name, edits);
+    copy.scene.edits = edits_name(name);
+    write_file_atomically(files() / (name + ".json"), copy.text());
+    return {name + ".json", edits_name(name)};
+}
+
+void SessionFolder::save_edits(const std::string& name, const EditLog& edits) const {
+    write_file_atomically(files() / edits_name(name), edit_log_text(edits));
 }
 
 std::string SessionFolder::keep_mesh(const std::string& name, const std::string& bytes) const {
+    const std::string file = free_mesh_place(name, bytes, is_taken());
     fs::create_directories(files() / "meshes");
-    write_file_atomically(files() / "meshes" / name, bytes);
-    return "meshes/" + name;
+    write_file_atomically(files() / file, bytes);
+    return file;
+}
+
+IsTaken SessionFolder::is_taken() const {
+    return [this](const std::string& file, const std::string& bytes) { return is_other_file(folder_ / file, bytes); };
 }
 
 fs::path SessionFolder::files() const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <plisse/scene/scene.h>
+#include <plisse/scene/scene_copy.h>
 #include <plisse/steer/edit_log.h>
 
 namespace plisse::studio {
@@ -18,7 +19,10 @@ public:
     /// Writes NAME.json, a scene that names the edit log NAME.edits.json beside it, and copies of its meshes. name: a
     /// plain one. Returns the names of the two files.
     std::vector<std::string> save(const std::string& name, const Scene& first_scene, const EditLog& edits) const;
-    /// Keeps a mesh that was sent; returns its path relative to the folder.
+    /// The edit log alone.
+    void save_edits(const std::string& name, const EditLog& edits) const;
+    /// Keeps a mesh that was sent; returns its path relative to the folder. Where another mesh has the name, it gets a
+    /// number.
     std::string keep_mesh(const std::string& name, const std::string& bytes) const;
 
     /// The folder, made if it is not there.
@@ -29,6 +33,8 @@ public:
     std::string list() const;
 
 private:
+    IsTaken is_taken() const;
+
     std::filesystem::path folder_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -15,6 +14,7 @@
 #include <plisse/scene/hierarchy_cache.h>
 #include <plisse/steer/session.h>
 
+#include "autosave.h"
 #include "board.h"
 #include "commands.h"
 #include "export_states.h"
@@ -22,6 +22,7 @@
 #include "hand.h"
 #include "projector.h"
 #include "session_folder.h"
+#include "step_rate.h"
 #include "task_queue.h"
 
 namespace plisse::studio {
@@ -68,6 +69,7 @@ private:
     void take_step();
     void end_of_level(Session::StepEnd end);
     void refine_once();
+    void keep_session();
 
     void perform(ClientId client, const OpenScene& open);
     void perform(ClientId client, const Play&);
@@ -89,6 +91,7 @@ private:
     void perform(ClientId client, const Export& what);
 
     Session& session();
+    void begin_saved(const std::string& name);
     void begin(const Scene& scene, const std::string& name, State next);
     void set(const std::vector<std::pair<std::string, nlohmann::ordered_json>>& values, const std::string& gesture);
     void set_pull(const std::string& id, const Hand* hand);
@@ -111,11 +114,11 @@ private:
     void tell_parts();
     void show_all();
     void tell_sample(double seconds, int iterations);
-    double steps_per_second();
 
     Board board_;
     Projector projector_;
     SessionFolder folder_;
+    Autosave autosave_{folder_};
     std::optional<HierarchyCache> cache_;
 
     TaskQueue<Task> tasks_{*this};
@@ -134,7 +137,7 @@ private:
     Clock::time_point arrival_{};                   ///< of the task that is done
     std::optional<Clock::time_point> edit_arrival_; ///< of a change that no step has shown yet
     double edit_to_step_ms_ = 0;
-    std::deque<Clock::time_point> step_times_;
+    StepRate step_rate_;
     Clock::time_point last_status_{}, last_progress_{};
 };
 

@@ -19,6 +19,8 @@ namespace plisse {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 struct StudioArguments {
     std::string scene, folder = "plisse-studio";
     int port = 0, threads = 0;
@@ -55,6 +57,9 @@ void serve(const StudioArguments& arguments) {
     std::signal(SIGINT, stop_serving);
     std::signal(SIGTERM, stop_serving);
     fmt::print("plisse studio: {}\nCtrl-C ends it; what is saved goes to {}\n", server.url(), arguments.folder);
+    if (const fs::path last = fs::path(arguments.folder) / (std::string(studio::Autosave::name) + ".json");
+        arguments.scene.empty() && fs::exists(last))
+        fmt::print("to go on where the last session ended: plisse studio {}\n", last.string());
     std::fflush(stdout);
     if (!arguments.no_open)
         open_browser(server.url());

@@ -7,7 +7,7 @@
 
 #include <plisse/base/error.h>
 #include <plisse/mesh/check_mesh.h>
-#include <plisse/mesh/read_mesh.h>
+#include <plisse/mesh/mesh_formats.h>
 #include <plisse/scene/mesh_check_json.h>
 #include <plisse/scene/read_scene.h>
 #include <plisse/spatial/box.h>
@@ -122,8 +122,7 @@ HttpAnswer Studio::open_mesh(const std::map<std::string, std::string>& query, co
     const std::string name = given == query.end() ? "" : given->second;
     if (!is_plain_name(name))
         throw InputError("name", "this cannot name a mesh", "give a plain file name with its extension");
-    const std::string file = folder_.keep_mesh(name, bytes);
-    const MeshFile read = read_mesh(folder_.files() / file);
+    const MeshFile read = parse_mesh(bytes, name);
     if (const MeshCheck check = check_mesh(read.mesh); !check.usable()) {
         const Board::Picture picture = projector_.unusable(read.mesh, marked_faces(read.mesh, check));
         board_.set_picture(picture);
@@ -133,6 +132,7 @@ HttpAnswer Studio::open_mesh(const std::map<std::string, std::string>& query, co
         findings["meshes"] = {{{"notes", describe_findings(check, read.mesh)}}};
         return unusable_answer("this mesh cannot be used", findings);
     }
+    const std::string file = folder_.keep_mesh(name, bytes);
     const std::string stem = std::filesystem::path(name).stem().string();
     begin(parse_scene(stem + ".json", scene_of(stem, file, read.mesh).dump(), folder_.files()), stem, State::idle);
     return ok_answer();

@@ -81,15 +81,13 @@ TEST(Session, IsReplayedToTheSameBitsOnAnyNumberOfThreads) {
     Steered steered;
     steer(steered);
     EXPECT_EQ(steered.witness.intersections, 0);
-    EditLog log = steered.session.edits();
-    EXPECT_EQ(log.size(), 7u); // the gesture's two sets at one step are one
-    log.push_back(std::make_shared<const Edit>(
-        Edit{Edit::Kind::end, steered.session.run().level(), steered.session.steps(), {}, {}}));
+    const EditLog log = steered.session.ended_edits();
+    EXPECT_EQ(log.size(), 8u); // the gesture's two sets at one step are one
     for (int threads : {1, 2}) {
         const ThreadLimit limit(threads);
         Context context;
         Witness witness;
-        const RunResult result = replay(steered.session.first_scene(), log, {}, witness, context);
+        const RunResult result = replay(*steered.session.first_scene(), log, {}, witness, context);
         EXPECT_EQ(result.level, 1);
         EXPECT_EQ(result.positions, steered.positions());
     }
@@ -205,9 +203,7 @@ TEST(Replay, IsResumedToTheSameBits) {
     Steered steered;
     steer(steered);
     const Scene scene = small_scene();
-    EditLog log = steered.session.edits();
-    log.push_back(std::make_shared<const Edit>(
-        Edit{Edit::Kind::end, steered.session.run().level(), steered.session.steps(), {}, {}}));
+    const EditLog log = steered.session.ended_edits();
     Context context;
     Witness witness;
     const RunResult whole = replay(scene, log, {}, witness, context);
@@ -230,6 +226,18 @@ TEST(Replay, RefusesEditsThatNeedANewRun) {
     Context context;
     Witness witness;
     EXPECT_THROW(replay(small_scene(), log, {}, witness, context), InputError);
+}
+
+TEST(Replay, ReadsNoFileThatAnEditNames) {
+    const EditLog log{std::make_shared<const Edit>(Edit{Edit::Kind::set, 0, 1, "/bodies/0/mesh", "secret.obj"})};
+    Context context;
+    Witness witness;
+    try {
+        replay(small_scene(), log, {}, witness, context);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot take over"), std::string::npos) << error.what();
+    }
 }
 
 } // namespace

@@ -10,6 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <studio/http_text.h>
+
 namespace plisse::studio {
 
 RawConnection::RawConnection(std::uint16_t port, int receive_buffer)
@@ -145,7 +147,7 @@ std::string request(std::string_view method, std::string_view target, std::uint1
     const std::string host = "127.0.0.1:" + std::to_string(port);
     std::string text;
     text.append(method).append(" ").append(target).append(" HTTP/1.1\r\nHost: ").append(host);
-    text.append("\r\nOrigin: http://").append(host).append("\r\nCookie: plisse_token=").append(token);
+    text.append("\r\nOrigin: http://").append(host).append("\r\nCookie: ").append(cookie_name(port)).append("=").append(token);
     text.append("\r\n").append(more_lines);
     if (method == "POST")
         text.append("Content-Length: ").append(std::to_string(body.size())).append("\r\n");

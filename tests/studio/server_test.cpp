@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <studio/http_text.h>
+
 #include "raw_client.h"
 #include "running_server.h"
 
@@ -34,7 +36,7 @@ TEST(Server, TheAddressOpensThePageAndTheCookieTheRest) {
     EXPECT_EQ(page.status, 200);
     EXPECT_EQ(page.body, "<!doctype html>");
     EXPECT_EQ(page.fields.at("content-type"), "text/html");
-    EXPECT_EQ(page.fields.at("set-cookie"), "plisse_token=" + running.token + "; Path=/; HttpOnly; SameSite=Strict");
+    EXPECT_EQ(page.fields.at("set-cookie"), cookie_name(running.port()) + "=" + running.token + "; Path=/; HttpOnly; SameSite=Strict");
     EXPECT_EQ(page.fields.at("cache-control"), "no-store");
     EXPECT_EQ(page.fields.at("referrer-policy"), "no-referrer");
     EXPECT_EQ(page.fields.at("x-content-type-options"), "nosniff");
@@ -63,6 +65,9 @@ TEST(Server, WithoutTheTokenNothingIsGiven) {
         EXPECT_EQ(ask(port, request("POST", "/api/mesh", port, token)).status, 403);
         EXPECT_FALSE(RawPage(port, token).is_open());
     }
+    std::string other_port = request("GET", "/assets/a.js", port, running.token);
+    other_port.replace(other_port.find(cookie_name(port)), cookie_name(port).size(), cookie_name(1));
+    EXPECT_EQ(ask(port, other_port).status, 403) << "another studio of this machine has its own cookie";
     EXPECT_GE(running.server.counters().refused, 20U);
     EXPECT_EQ(running.application.joins, 0U);
 }
@@ -90,7 +95,7 @@ TEST(Server, OtherOriginsAreRefused) {
     const std::string host = "127.0.0.1:" + std::to_string(port);
     const auto status = [&](const std::string& method, const std::string& target, const std::string& lines) {
         return ask(port, method + " " + target + " HTTP/1.1\r\nHost: " + host +
-                             "\r\nCookie: plisse_token=" + running.token + "\r\n" + lines + "\r\n")
+                             "\r\nCookie: " + cookie_name(port) + "=" + running.token + "\r\n" + lines + "\r\n")
             .status;
     };
     const std::string upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
@@ -148,7 +153,7 @@ TEST(Server, UploadsAreBounded) {
     EXPECT_EQ(status("/assets/a.js", 1), 405);
     const std::string start = "POST /api/mesh HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
                               "\r\nOrigin: http://127.0.0.1:" + std::to_string(port) +
-                              "\r\nCookie: plisse_token=" + running.token + "\r\n";
+                              "\r\nCookie: " + cookie_name(port) + "=" + running.token + "\r\n";
     EXPECT_EQ(ask(port, start + "Transfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n").status, 411);
     EXPECT_EQ(ask(port, start + "Content-Length: 18446744073709551615\r\n\r\n").status, 413);
     EXPECT_EQ(ask(port, start + "Content-Length: 99999999999999999999999\r\n\r\n").status, 400);

@@ -19,6 +19,7 @@ struct Progress {
     double step_norm = 0; ///< largest nodal Newton step divided by the time step, m/s
     double gap = 0;       ///< smallest distance between surface primitives in contact range, m; infinity when none
     double fraction = 0;  ///< share of the whole run done, an estimate in [0, 1]
+    int step_count = 0;   ///< steps that the phase takes; 0: nobody knows yet
 };
 
 /// Carries cancellation, progress, messages and timing through every stage of a run. The base class listens to nothing.

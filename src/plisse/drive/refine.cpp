@@ -120,6 +120,7 @@ Positions expand(const Discretization& discretization, int from, const Positions
     shown.level = from + 1;
     shown.level_count = discretization.finest() + 1;
     shown.phase = "refine";
+    shown.step_count = static_cast<int>(coarse.batches.size());
     shown.time = t;
     shown.duration = discretization.model().solve.duration;
     const RunFraction run(discretization.model(), discretization.finest() + 1);

@@ -10,34 +10,33 @@
 
 namespace plisse {
 
-namespace {
-
-/// The place of a file in the copy: its own name, with a number when other contents have taken that.
-std::string place_for(const std::filesystem::path& path, const std::string& bytes,
-                      std::vector<SceneCopy::MeshBytes>& meshes) {
+std::string free_mesh_place(const std::filesystem::path& name, const std::string& bytes, const IsTaken& is_taken) {
     for (int number = 1;; ++number) {
         const std::string suffix = number > 1 ? fmt::format("-{}", number) : "";
-        const std::string file = "meshes/" + path.stem().string() + suffix + path.extension().string();
-        const auto taken =
-            std::find_if(meshes.begin(), meshes.end(), [&](const auto& mesh) { return mesh.file == file; });
-        if (taken == meshes.end()) {
-            meshes.push_back({file, bytes});
-            return file;
-        }
-        if (taken->bytes == bytes)
+        const std::string file = "meshes/" + name.stem().string() + suffix + name.extension().string();
+        if (!is_taken(file, bytes))
             return file;
     }
 }
 
-} // namespace
-
-SceneCopy copy_scene(const Scene& scene) {
+SceneCopy copy_scene(const Scene& scene, const IsTaken& is_taken) {
     SceneCopy copy{scene, {}};
+    const auto find = [&](const std::string& file) {
+        return std::find_if(copy.meshes.begin(), copy.meshes.end(), [&](const auto& mesh) { return mesh.file == file; });
+    };
+    const auto place_for = [&](const std::string& source) {
+        const std::string bytes = read_bytes(scene.folder / source);
+        const std::string file = free_mesh_place(source, bytes, [&](const std::string& place, const std::string&) {
+            const auto taken = find(place);
+            return (taken != copy.meshes.end() && taken->bytes != bytes) || (is_taken && is_taken(place, bytes));
+        });
+        if (find(file) == copy.meshes.end())
+            copy.meshes.push_back({file, bytes});
+        return file;
+    };
     const auto take = [&](MeshSpec& spec) {
-        if (!spec.is_file())
-            return;
-        const std::filesystem::path path = scene.folder / spec.file;
-        spec.file = place_for(path, read_bytes(path), copy.meshes);
+        if (spec.is_file())
+            spec.file = place_for(spec.file);
     };
     for (BodySpec& body : copy.scene.bodies) {
         take(body.mesh);
@@ -49,7 +48,7 @@ SceneCopy copy_scene(const Scene& scene) {
     for (ObstacleSpec& obstacle : copy.scene.obstacles)
         take(obstacle.mesh);
     if (copy.scene.edits)
-        copy.scene.edits = place_for(scene.folder / *scene.edits, read_bytes(scene.folder / *scene.edits), copy.meshes);
+        copy.scene.edits = place_for(*scene.edits);
     return copy;
 }
 

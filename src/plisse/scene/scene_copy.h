@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,14 @@ struct SceneCopy {
     std::string text() const;
 };
 
-/// Reads every mesh file the scene names. Throws InputError for one that cannot be read.
-SceneCopy copy_scene(const Scene& scene);
+/// Whether a place in the copy's folder, such as "meshes/cloth.obj", holds something other than these bytes.
+using IsTaken = std::function<bool(const std::string& file, const std::string& bytes)>;
+
+/// "meshes/" and the file's own name, with a number where that is taken.
+std::string free_mesh_place(const std::filesystem::path& name, const std::string& bytes, const IsTaken& is_taken);
+
+/// Reads every mesh file the scene names. Throws InputError for one that cannot be read. is_taken: for a folder that
+/// holds other files already.
+SceneCopy copy_scene(const Scene& scene, const IsTaken& is_taken = nullptr);
 
 } // namespace plisse

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <plisse/base/error.h>
+#include <plisse/steer/edited_scene.h>
 
 namespace plisse {
 
@@ -68,9 +69,10 @@ private:
         rested_ = false;
         if (edit.kind == Edit::Kind::refine)
             return session_.refine(reason_) ? Move::edited : Move::not_refined;
-        if (!session_.set({{edit.pointer, edit.value}}))
+        if (!can_go_on(session_.scene(), edited_scene(session_.scene(), edit.pointer, edit.value)))
             throw InputError(edit.pointer, "a run cannot take over this edit while it goes on",
                              "give the scene this value from the beginning");
+        session_.set({{edit.pointer, edit.value}});
         return Move::edited;
     }
 

@@ -64,6 +64,12 @@ int Session::steps() {
     return run_->log().level_report(run_->level()).steps;
 }
 
+EditLog Session::ended_edits() {
+    EditLog log = edits_;
+    log.push_back(std::make_shared<const Edit>(Edit{Edit::Kind::end, run_->level(), steps(), {}, {}}));
+    return log;
+}
+
 bool Session::timeline_is_over() {
     return run_->level() > run_->first_level() || run_->stepper().timeline_is_over(run_->duration());
 }

@@ -28,10 +28,13 @@ public:
     Session(Scene scene, EditLog made, const RunOptions& options, Recorder& recorder, Context& context);
     ~Session();
 
-    /// The scene as it was when the run began, and with what has been edited since.
-    const Scene& first_scene() const { return *first_; }
+    /// The scene as it was when the run began (of the same run always the same object), and with what has been edited
+    /// since.
+    const std::shared_ptr<const Scene>& first_scene() const { return first_; }
     const Scene& scene() const { return scene_; }
     const EditLog& edits() const { return edits_; }
+    /// The same with an end to it, here and now: who follows it comes to this state and stays there.
+    EditLog ended_edits();
     StagedRun& run() { return *run_; }
     /// Steps taken on the level, as edits count them.
     int steps();

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <fstream>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,19 +12,10 @@
 
 #include "raw_client.h"
 #include "running_server.h"
+#include "running_studio.h"
 
 namespace plisse::studio {
 namespace {
-
-/// Answers every text, as the session does: with an error when it is no command.
-class AnsweringApplication : public FakeApplication {
-public:
-    void on_message(ClientId client, std::string_view text) override {
-        const auto parsed = parse_command(text);
-        const auto* refused = std::get_if<NotACommand>(&parsed);
-        server->send_text(client, refused ? error_message(*refused) : "{}");
-    }
-};
 
 std::string random_bytes(Random& random, int most) {
     std::string bytes(static_cast<std::size_t>(1 + random.below(most)), '\0');
@@ -112,45 +104,40 @@ void expect_no_growth(std::size_t before) {
 #endif
 }
 
-TEST(ServerFuzz, MalformedMessagesAreAnsweredOrEndTheirConnection) {
+TEST(StudioFuzz, MalformedMessagesAreAnsweredOrEndTheirConnection) {
     ServerOptions options;
     options.message_bytes = message_bytes;
-    options.token = random_token();
-    AnsweringApplication application;
-    Server server(options, application);
-    application.server = &server;
-    std::thread thread([&] { server.run(); });
-
+    RunningStudio running(small_scene_text, nullptr, options);
     constexpr int rounds = 10'000;
     Random random(20);
     std::size_t memory = 0;
     int answered = 0;
-    auto page = std::make_unique<RawPage>(server.port(), options.token);
+    auto page = std::make_unique<WatchingPage>(running);
+    ASSERT_TRUE(page->comes_to("idle"));
     for (int round = 0; round < rounds; ++round) {
         if (round == rounds / 5)
             memory = resident_bytes();
         if (random.below(2) == 0) {
-            page->send_text(malformed_text(random));
-            const auto answer = page->frame();
-            ASSERT_TRUE(answer) << "in round " << round;
-            ASSERT_EQ(answer->opcode, text_frame);
+            const std::string text = malformed_text(random);
+            page->page.send_text(text);
+            if (std::holds_alternative<Command>(parse_command(text)))
+                continue;
+            ASSERT_FALSE(page->next("error").is_null()) << "in round " << round;
             ++answered;
         } else {
-            page->connection.send(malformed_frames(random));
-            page->connection.finish_sending();
-            ASSERT_TRUE(page->connection.is_closed()) << "in round " << round;
-            page = std::make_unique<RawPage>(server.port(), options.token);
+            page->page.connection.send(malformed_frames(random));
+            page->page.connection.finish_sending();
+            ASSERT_TRUE(page->page.connection.is_closed()) << "in round " << round;
+            page = std::make_unique<WatchingPage>(running);
             ASSERT_TRUE(page->is_open()) << "in round " << round;
         }
     }
     EXPECT_GT(answered, rounds / 3);
     expect_no_growth(memory);
     page.reset();
-    EXPECT_TRUE(eventually([&] { return server.counters().connections == 0; }));
-    EXPECT_EQ(server.counters().queued_bytes, 0U);
-    server.stop();
-    thread.join();
-    EXPECT_EQ(application.joins, application.leaves);
+    EXPECT_TRUE(eventually([&] { return running.server.counters().connections == 0; }));
+    EXPECT_EQ(running.server.counters().queued_bytes, 0U);
+    EXPECT_TRUE(running.is_well());
 }
 
 std::string mutated(std::string text, Random& random) {
@@ -175,7 +162,7 @@ std::string mutated(std::string text, Random& random) {
     return text;
 }
 
-TEST(ServerFuzz, MalformedRequestsAndUploadsAreSurvived) {
+TEST(ServerFuzz, MalformedRequestsAreSurvived) {
     RunningServer running;
     const std::uint16_t port = running.port();
     Random random(21);
@@ -192,6 +179,45 @@ TEST(ServerFuzz, MalformedRequestsAndUploadsAreSurvived) {
     EXPECT_GT(answered, 1000);
     EXPECT_TRUE(running.is_well());
     EXPECT_TRUE(eventually([&] { return running.server.counters().connections == 0; }));
+}
+
+/// A tetrahedron in each format that can be sent.
+std::map<std::string, std::string> good_meshes() {
+    std::string stl(80, ' ');
+    const auto add = [&](const auto& value) { stl.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    constexpr std::array<std::array<float, 3>, 4> places{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    constexpr std::array<std::array<std::size_t, 3>, 4> faces{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    add(std::uint32_t{4});
+    for (const auto& face : faces) {
+        add(std::array<float, 3>{});
+        for (const std::size_t corner : face)
+            add(places[corner]);
+        add(std::uint16_t{0});
+    }
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n", corners = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+    return {{"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nf 1/1 3/1 2/1\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"},
+            {"a.off", "OFF\n4 4 0\n" + points + corners},
+            {"a.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double "
+                      "z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n" +
+                          points + corners},
+            {"a.stl", stl}};
+}
+
+TEST(StudioFuzz, MalformedUploadsAreRefusedOrOpened) {
+    RunningStudio running(nullptr);
+    Random random(22);
+    int opened = 0, refused = 0;
+    for (const auto& [name, bytes] : good_meshes())
+        ASSERT_EQ(running.post("/api/mesh?name=" + name, bytes).status, 200) << name;
+    for (int round = 0; round < 100; ++round)
+        for (const auto& [name, bytes] : good_meshes()) {
+            const RawResponse answer = running.post("/api/mesh?name=" + name, mutated(bytes, random));
+            ASSERT_TRUE(answer.status == 200 || answer.status == 422) << answer.status << " in round " << round;
+            ++(answer.status == 200 ? opened : refused);
+        }
+    EXPECT_GT(refused, 100);
+    EXPECT_GT(opened, 10);
+    EXPECT_TRUE(running.is_well());
 }
 
 } // namespace
