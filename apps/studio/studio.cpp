@@ -313,6 +313,7 @@ void Studio::jump() {
     projector_.begin_run();
     board_.cut_frames(session_->marks.frames);
     board_.cut_samples(session_->marks.samples);
+    message_.clear();
     show_session();
     set_state(State::idle);
 }

@@ -50,6 +50,7 @@ void Studio::perform(ClientId, const Pause&) {
 }
 
 void Studio::perform(ClientId, const Step&) {
+    message_.clear();
     set_state(session().is_at_rest() ? State::at_rest : State::idle);
     if (!session().is_at_rest())
         take_step();

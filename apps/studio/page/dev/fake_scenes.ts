@@ -18,9 +18,10 @@ function scene(name: string, body: string, ball: boolean): Scene {
         bodies: [{ name: body, material: { ...presets.cotton! }, pressure: 0 }],
         obstacles: ball ? [{ name: 'ball', motion: [] }] : [],
         handles: ball ? [{ name: 'crown', body, axes: 'xz', motion: [] }] : [],
+        loads: ball ? [{ body, select: { vertices: [0] }, force: [0, 0, 0] }] : [],
         gravity: [0, ball ? -9.81 : 0, 0],
         contact: { distance: 2e-3, thickness: 0, friction: 0.2 },
-        hierarchy: { levels: 4, coarsest_vertices: 500, source: 'decimation' },
+        hierarchy: { levels: 4, coarsest_vertices: 500, source: 'decimation', operator: 'shell', bending_on: 'level' },
         solve: { method: 'progressive', time_step: 0.05, duration: 2, tolerance: 1e-3 },
     };
 }

@@ -201,7 +201,7 @@ export class FakeSession {
         this.tellStatus();
         let batch = 0;
         const next = (): void => {
-            this.tell({ type: 'progress', fraction: ++batch / 12, text: `level ${this.level + 1}: undoing collapses, batch ${batch} of 12` });
+            this.tell({ type: 'progress', fraction: ++batch / 12, text: `level ${this.level + 1}: undoing collapses, batch ${batch}`, batch, batches: 12 });
             if (batch < 12) {
                 this.timer = setTimeout(next, 70);
                 return;

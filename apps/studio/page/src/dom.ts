@@ -78,6 +78,18 @@ export function button(options: ButtonOptions): HTMLButtonElement {
     return made;
 }
 
+/** A select that gives the focus back once a pointer has chosen: what is typed then is a command, not another choice. */
+export function select(attributes: Attributes, ...options: HTMLOptionElement[]): HTMLSelectElement {
+    const made = element('select', attributes, ...options);
+    let byPointer = false;
+    made.addEventListener('pointerdown', () => (byPointer = true));
+    made.addEventListener('keydown', () => (byPointer = false));
+    made.addEventListener('change', () => {
+        if (byPointer) made.blur();
+    });
+    return made;
+}
+
 export function setPressed(toggle: HTMLElement, pressed: boolean): void {
     toggle.setAttribute('aria-pressed', String(pressed));
 }

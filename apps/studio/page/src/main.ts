@@ -1,4 +1,5 @@
 import { Actions, newGesture } from './actions';
+import { dropLostColoring } from './colorings';
 import { Connection } from './connection';
 import { element } from './dom';
 import { Meter } from './meter';
@@ -68,7 +69,8 @@ const handlers: ViewHandlers = {
     unknownMesh: () => connection.restart(),
     shown: (message) => {
         if (!message.saved) meter.positions(performance.now(), message.step);
-        legend.show(message.scalars !== null, message.low, message.high);
+        // Others without colours are from before these were asked for.
+        if (message.scalars || message.saved) legend.show(message.scalars, message.low, message.high);
         readout.showMeasures({
             volume: view.volume, editShown: meter.editShown, stepsPerSecond: meter.stepsPerSecond(performance.now()),
             vertices: message.positions.length / 3, level: message.level, detail: message.detail,
@@ -105,8 +107,11 @@ function receive(message: ServerMessage): void {
             cameraScene = '';
         }
     }
+    const looksBack = store.state.frame !== null;
     if (message.type === 'session' || message.type === 'parts') meter.acknowledged(store.state.status?.step ?? 0);
     store.receive(message);
+    // The frame that was looked at is gone: the server still keeps the running state from this page.
+    if (looksBack && store.state.frame === null) connection.send({ type: 'frame', index: null });
     if (message.type === 'saved' && message.files.length > 0 && actions.takesExport())
         for (const file of message.files) download(file);
 }
@@ -140,6 +145,7 @@ store.watch((state) => [state.selected, state.tool, state.parts, state.session?.
     const isTool = (state.tool === 'move' || state.tool === 'turn') && state.frame === null && !state.unusable;
     view.setGizmo(isTool ? gizmoTarget(state) : null, state.tool === 'turn' ? 'rotate' : 'translate');
 });
+dropLostColoring(store, (color) => actions.look({ color }));
 onTheme(() => view.applyTheme(isDark()));
 
 // What is shown, for tests and for whoever looks behind the page.

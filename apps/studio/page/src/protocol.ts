@@ -19,15 +19,26 @@ export interface Material {
     [key: string]: Json;
 }
 
+/** Dead loads on the selected vertices of a body (null: all of it): either a force or a traction. */
+export interface Load {
+    body: string;
+    select: { [key: string]: Json } | null;
+    /** N in all; a vector, or keyframes. */
+    force?: Json;
+    /** Pa; likewise. */
+    traction?: Json;
+}
+
 /** The parts of a scene file, with its defaults filled in, that the page reads. */
 export interface Scene {
     name: string;
     bodies: { name: string; material: Material; pressure: Json }[];
+    loads: Load[];
     obstacles: { name: string; motion: MotionKey[] | { [key: string]: Json } }[];
     handles: { name: string; body: string; axes: string; motion: MotionKey[] }[];
     gravity: Json;
     contact: { distance: number; thickness: number; friction: number };
-    hierarchy: { levels: number; coarsest_vertices: number; source: string };
+    hierarchy: { levels: number; coarsest_vertices: number; source: string; operator: string; bending_on: string };
     solve: { method: string; time_step: number; duration: number; tolerance: number };
 }
 
@@ -122,10 +133,19 @@ export interface PartsMessage {
     pulls: Pull[];
 }
 
+export interface Progress {
+    /** Of the whole run. */
+    fraction: number;
+    text: string;
+    /** While collapses are undone: how many batches of this refinement are done, and of how many. */
+    batch?: number;
+    batches?: number;
+}
+
 export type ServerMessage =
     | SessionMessage
     | StatusMessage
-    | { type: 'progress'; fraction: number; text: string }
+    | ({ type: 'progress' } & Progress)
     | ({ type: 'sample' } & Sample)
     | { type: 'samples'; samples: Sample[] }
     | { type: 'frames'; count: number; list: Frame[]; from: number }

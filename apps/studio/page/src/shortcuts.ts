@@ -1,8 +1,8 @@
 // Keys, and the page that names them.
 
 import type { Actions } from './actions';
+import { nextColoring } from './colorings';
 import { button, element } from './dom';
-import { colorings } from './protocol';
 import type { Store } from './store';
 
 interface Shortcut {
@@ -25,10 +25,6 @@ export interface ShortcutTargets {
 }
 
 function shortcuts({ store, actions, resetCamera, openSave }: ShortcutTargets, help: () => void): Shortcut[] {
-    const nextColor = (): void => {
-        const place = colorings.indexOf(store.state.color);
-        actions.look({ color: colorings[(place + 1) % colorings.length]! });
-    };
     return [
         { keys: 'Space', words: 'Play, pause; stop refining', matches: plain(' '), press: () => actions.playOrPause() },
         { keys: '.', words: 'One step', matches: plain('.'), press: () => actions.step() },
@@ -40,7 +36,7 @@ function shortcuts({ store, actions, resetCamera, openSave }: ShortcutTargets, h
         { keys: 'Ctrl S', words: 'Save the scene', matches: command('s'), press: openSave },
         { keys: 'E', words: 'Edges', matches: plain('e'), press: () => actions.look({ edges: !store.state.edges }) },
         { keys: 'D', words: 'Finest detail', matches: plain('d'), press: () => actions.look({ detail: !store.state.detail }) },
-        { keys: 'C', words: 'Next colouring', matches: plain('c'), press: nextColor },
+        { keys: 'C', words: 'Next colouring', matches: plain('c'), press: () => actions.look({ color: nextColoring(store.state) }) },
         { keys: 'F', words: 'Whole scene in view', matches: plain('f'), press: resetCamera },
         { keys: 'L', words: 'Back to the running state', matches: plain('l'), press: () => actions.showLive() },
         { keys: '1', words: 'Look around', matches: plain('1'), press: () => actions.useTool('look') },
@@ -51,10 +47,12 @@ function shortcuts({ store, actions, resetCamera, openSave }: ShortcutTargets, h
     ];
 }
 
-/** Whether a key belongs to what has the focus: text is typed there, or Space presses it. */
+/** Whether a key belongs to what has the focus: text is typed there, or Space presses it. No number has an R in it. */
 export function isTaken(event: KeyboardEvent): boolean {
     const target = event.target as HTMLElement | null;
     if (!target?.matches) return false;
+    const isCommand = event.ctrlKey || event.metaKey || event.altKey;
+    if (target.matches('.number') && !isCommand) return event.key.length > 1 || /[\d.,e+-]/i.test(event.key);
     if (target.matches('input[type=text], textarea')) return !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 's';
     if (event.key === ' ') return target.matches('button, summary, select, label, input:not([type=range])');
     return target.matches('select') && event.key.length === 1;
@@ -90,6 +88,9 @@ export function startShortcuts(targets: ShortcutTargets): () => void {
         const found = list.find((shortcut) => shortcut.matches(event));
         if (!found) return;
         event.preventDefault();
+        // What was typed counts before the command does.
+        const target = event.target as HTMLElement | null;
+        if (target?.matches?.('.number')) target.blur();
         found.press();
     });
     return show;

@@ -1,7 +1,7 @@
 // What the page knows: one state, changed only by the functions below, and watched by the parts of the page.
 
 import type {
-    ColorBy, Findings, Frame, PartsMessage, Sample, ServerMessage, SessionMessage, StatusMessage,
+    ColorBy, Findings, Frame, PartsMessage, Progress, Sample, ServerMessage, SessionMessage, StatusMessage,
 } from './protocol';
 
 export type Connection = 'connecting' | 'open' | 'lost' | 'refused';
@@ -19,7 +19,7 @@ export interface State {
     connection: Connection;
     session: SessionMessage | null;
     status: StatusMessage | null;
-    progress: { fraction: number; text: string } | null;
+    progress: Progress | null;
     samples: Sample[];
     frames: Frame[];
     /** The saved frame that is looked at; null for the running state. */
@@ -75,8 +75,10 @@ export function reduce(state: State, message: ServerMessage): State {
                 status: message,
                 progress: isBusy(message) ? state.progress : null,
             };
-        case 'progress':
-            return { ...state, progress: { fraction: message.fraction, text: message.text } };
+        case 'progress': {
+            const { type: _, ...progress } = message;
+            return { ...state, progress };
+        }
         case 'sample': {
             // Appended in place: a long run has too many to copy at every step. The new outer state is what is watched.
             const { type: _, ...sample } = message;

@@ -1,11 +1,15 @@
 import { describe, expect, it, vi } from 'vitest';
 
+import { nextColoring, whyNot } from '../src/colorings';
 import { waitBefore } from '../src/connection';
 import { Meter } from '../src/meter';
-import { hintFor } from '../src/panels/dock';
+import { hintFor, progressOf, wordOf } from '../src/panels/dock';
 import { phrasesOf } from '../src/panels/findings';
-import { gravityOfSize, gravitySize, presetOf } from '../src/panels/steering';
+import { selectionWords } from '../src/panels/loads';
+import { gravitySize, presetOf } from '../src/panels/steering';
 import { levelRuns } from '../src/panels/timeline';
+import { lackOf } from '../src/panels/toolbar';
+import { ofLength } from '../src/panels/vector_field';
 import { plotHeight, plotRange, thinned } from '../src/plot';
 import type { Scale } from '../src/scale';
 import { fromFraction, toFraction, words } from '../src/scale';
@@ -50,9 +54,9 @@ describe('plots', () => {
 
 describe('steering', () => {
     it('keeps the way gravity points', () => {
-        expect(gravityOfSize([0, -9.81, 0], 2)).toEqual([0, -2, 0]);
-        expect(gravityOfSize([3, 0, 4], 10)).toEqual([6, 0, 8]);
-        expect(gravityOfSize([0, 0, 0], 5)).toEqual([0, -5, 0]);
+        expect(ofLength([0, -9.81, 0], 2)).toEqual([0, -2, 0]);
+        expect(ofLength([3, 0, 4], 10)).toEqual([6, 0, 8]);
+        expect(ofLength([0, 0, 0], 5)).toEqual([0, -5, 0]);
         expect(gravitySize([3, 0, 4])).toBe(5);
         expect(gravitySize([[0, 1]])).toBeNull();
     });
@@ -74,11 +78,58 @@ it('frames are grouped by level', () => {
     expect(levelRuns(frames)).toEqual([{ level: 0, share: 0.75 }, { level: 1, share: 0.25 }]);
 });
 
+const status = {
+    type: 'status', state: 'idle', level: 0, levels: 4, vertices: 1, phase: '', t: 0, duration: 1, step: 0,
+    equilibrium: false, steps_per_second: null, edit_to_step_ms: null, message: '',
+} as const;
+
+it('why a state could not be refined is said, until it is shown no more', () => {
+    const refused = { ...status, message: 'no safe direction was found' };
+    expect(wordOf({ ...initialState, status: refused })).toBe('No safe direction was found');
+    expect(wordOf({ ...initialState, status: { ...refused, state: 'refining' } })).toBe('');
+    expect(wordOf({ ...initialState, status: refused, frame: 3 })).toBe('');
+    expect(wordOf({ ...initialState, status })).toBe('');
+});
+
+it('progress is by batches where they are counted', () => {
+    const progress = { fraction: 0.4, text: 'level 2: step 3' };
+    const refining = { ...status, state: 'refining', level: 1 } as const;
+    expect(progressOf({ ...initialState, status: refining, progress })).toEqual(progress);
+    expect(progressOf({ ...initialState, status: refining, progress: { ...progress, batch: 3, batches: 12 } }))
+        .toEqual({ fraction: 0.25, text: 'To level 2: batch 3 of 12' });
+    expect(progressOf({ ...initialState, status: refining })).toEqual({ fraction: 0, text: '' });
+});
+
+describe('colours', () => {
+    it('by gap are not to be had of the finest detail, but of the finest level', () => {
+        const preview = { color: 'gap', detail: true, status } as const;
+        expect(whyNot('gap', preview)).toContain('own mesh');
+        expect(whyNot('stretch', preview)).toBeNull();
+        expect(whyNot('gap', { ...preview, detail: false })).toBeNull();
+        expect(whyNot('gap', { ...preview, status: { ...status, level: 3 } })).toBeNull();
+    });
+    it('follow each other, without those that are not there', () => {
+        expect(nextColoring({ color: 'curvature', detail: false, status })).toBe('gap');
+        expect(nextColoring({ color: 'curvature', detail: true, status })).toBe('level');
+        expect(nextColoring({ color: 'level', detail: true, status })).toBe('none');
+    });
+    it('are missed with a reason', () => {
+        expect(lackOf(new Float32Array([NaN, 1]), 'gap')).toBe('');
+        expect(lackOf(new Float32Array([NaN, NaN]), 'gap')).toContain('near enough');
+        expect(lackOf(null, 'stretch')).toContain('saved frame');
+    });
+});
+
+it('what a load pulls at is told in words', () => {
+    expect(selectionWords(null)).toBe('all over');
+    expect(selectionWords({ vertices: [3] })).toBe('vertex 3');
+    expect(selectionWords({ vertices: [3, 4] })).toBe('2 vertices');
+    expect(selectionWords({ boundary_loop: 0 })).toBe('boundary loop 0');
+    expect(selectionWords({ sphere: [[0, 0, 0], 1] })).toBe('inside of a sphere');
+    expect(selectionWords({ box: [[0, 0, 0], [1, 1, 1]] })).toBe('inside of a box');
+});
+
 it('the hint says what to press first', () => {
-    const status = {
-        type: 'status', state: 'idle', level: 0, levels: 4, vertices: 1, phase: '', t: 0, duration: 1, step: 0,
-        equilibrium: false, steps_per_second: null, edit_to_step_ms: null, message: '',
-    } as const;
     expect(hintFor({ ...initialState, status })).toContain('Press Play');
     expect(hintFor({ ...initialState, status: { ...status, state: 'at_rest' } })).toContain('Press Refine');
     expect(hintFor({ ...initialState, status: { ...status, state: 'failed', message: 'why' } })).toBe('why');

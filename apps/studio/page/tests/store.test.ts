@@ -17,9 +17,9 @@ const sample = (step: number): Sample => ({
 const session = (name: string, handles = 0): SessionMessage => ({
     type: 'session', presets: {}, live: [], edited: false, can_undo: false, can_redo: false, file_name: name,
     scene: {
-        name, bodies: [], obstacles: [], gravity: [0, 0, 0], contact: { distance: 1, thickness: 0, friction: 0 },
+        name, bodies: [], loads: [], obstacles: [], gravity: [0, 0, 0], contact: { distance: 1, thickness: 0, friction: 0 },
         handles: Array.from({ length: handles }, (_, i) => ({ name: `h${i}`, body: 'b', axes: 'xyz', motion: [] })),
-        hierarchy: { levels: 1, coarsest_vertices: 1, source: '' },
+        hierarchy: { levels: 1, coarsest_vertices: 1, source: '', operator: 'shell', bending_on: 'level' },
         solve: { method: '', time_step: 1, duration: 1, tolerance: 1 },
     },
 });

@@ -30,6 +30,21 @@ export function hintFor(state: State): string {
     }
 }
 
+/** What the server has to say of the state that is shown, such as why it could not be refined. */
+export function wordOf({ status, frame }: State): string {
+    if (!status || frame !== null || isBusy(status) || status.state === 'failed') return '';
+    return status.message.charAt(0).toUpperCase() + status.message.slice(1);
+}
+
+/** How far the bar is, and what stands under it: by batches of the refinement where they are counted. */
+export function progressOf(state: State): { fraction: number; text: string } {
+    const { progress, status } = state;
+    if (!progress) return { fraction: 0, text: '' };
+    const { batch, batches } = progress;
+    if (batch === undefined || !batches) return { fraction: progress.fraction, text: progress.text };
+    return { fraction: batch / batches, text: `To level ${(status?.level ?? 0) + 1}: batch ${batch} of ${batches}` };
+}
+
 export function dock(store: Store, actions: Actions): HTMLElement {
     const play = button({ icon: 'play', text: 'Play', label: 'Play', kind: 'primary large', press: () => actions.playOrPause() });
     const step = button({ icon: 'step', label: 'One step', key: '.', kind: 'large', press: () => actions.step() });
@@ -44,6 +59,7 @@ export function dock(store: Store, actions: Actions): HTMLElement {
         icon: 'back', text: 'Back to preview', label: 'Back to the coarse state that was refined', key: 'B', kind: 'large', press: () => actions.backToPreview(),
     });
     const hint = element('p', { class: 'hint', role: 'status' });
+    const word = element('p', { class: 'hint word', role: 'alert' });
     const bar = element('div', { class: 'progress-fill' });
     const text = element('span', { class: 'progress-text' });
     const progress = element('div', { class: 'progress', role: 'progressbar', 'aria-label': 'Progress', 'aria-valuemin': 0, 'aria-valuemax': 100 },
@@ -65,18 +81,21 @@ export function dock(store: Store, actions: Actions): HTMLElement {
         back.hidden = !status || status.level === 0 || isBusy(status);
         hint.textContent = hintFor(state);
         hint.classList.toggle('bad', status?.state === 'failed');
+        // An alert is read out again by a screen reader whenever it is written.
+        if (word.textContent !== wordOf(state)) word.textContent = wordOf(state);
     });
     store.watch((state) => [state.progress, isBusy(state.status)], (state) => {
         progress.hidden = !isBusy(state.status);
-        const fraction = state.progress?.fraction ?? 0;
-        bar.style.transform = `scaleX(${fraction})`;
-        progress.setAttribute('aria-valuenow', String(Math.round(fraction * 100)));
-        text.textContent = state.progress?.text ?? '';
+        const shown = progressOf(state);
+        bar.style.transform = `scaleX(${shown.fraction})`;
+        progress.setAttribute('aria-valuenow', String(Math.round(shown.fraction * 100)));
+        progress.setAttribute('aria-valuetext', shown.text);
+        text.textContent = shown.text;
     });
     const buttons = element('div', { class: 'dock-buttons' },
         element('div', { class: 'dock-group' }, play, step, restart),
         element('div', { class: 'dock-group' }, refine, finest, back));
-    const root = element('div', { class: 'dock' }, hint, progress, buttons);
+    const root = element('div', { class: 'dock' }, word, hint, progress, buttons);
     store.watch((state) => [state.unusable], (state) => (root.hidden = state.unusable !== null));
     return root;
 }

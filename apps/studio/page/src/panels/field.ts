@@ -25,6 +25,8 @@ export interface FieldOptions {
     /** The number in the scene's value, or null where it holds something else; the value itself when left out. */
     read?: (value: Json | undefined) => number | null;
     write?: (number: number, old: Json | undefined) => Json;
+    /** What an emptied field means, and the word for it. */
+    empty?: { value: Json; words: string };
     /** Said where the value is no number, such as "scripted". */
     otherwise?: string;
 }
@@ -48,7 +50,8 @@ export class NumberField {
         this.note = element('span', { class: 'note', id: `${id}-note` });
         this.number = element('input', {
             type: 'text', inputmode: 'decimal', id, class: 'number', autocomplete: 'off', spellcheck: 'false',
-            'data-pointer': options.pointer, 'aria-describedby': `${id}-note`, onchange: () => this.typed(),
+            'data-pointer': options.pointer, 'aria-describedby': `${id}-note`, placeholder: options.empty?.words ?? null,
+            onchange: () => this.typed(),
             onkeydown: (event: KeyboardEvent) => this.nudge(event),
         });
         this.slider = options.scale
@@ -122,6 +125,12 @@ export class NumberField {
     }
 
     private typed(): void {
+        const { empty } = this.options;
+        if (empty && this.number.value.trim() === '') {
+            this.number.setAttribute('aria-invalid', 'false');
+            this.actions.set([{ set: this.options.pointer, value: empty.value }], newGesture());
+            return;
+        }
         const number = Number(this.number.value.replace(',', '.'));
         const { min = -Infinity, max = Infinity, isWhole } = this.options;
         const isRight = this.number.value.trim() !== '' && Number.isFinite(number) && number >= min && number <= max;
@@ -144,7 +153,8 @@ export class NumberField {
         const now = Number(this.number.value) || 0;
         const size = now === 0 ? 1 : 10 ** Math.floor(Math.log10(Math.abs(now)));
         const by = this.options.isWhole ? 1 : size * (event.shiftKey ? 0.01 : 0.1);
-        this.number.value = words(now + sign * by, 6);
+        const { min = -Infinity, max = Infinity } = this.options;
+        this.number.value = words(Math.min(max, Math.max(min, now + sign * by)), 6);
         this.typed();
     }
 }

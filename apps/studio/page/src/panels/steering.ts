@@ -2,13 +2,17 @@
 
 import type { Actions } from '../actions';
 import { newGesture } from '../actions';
-import { element } from '../dom';
+import { element, select } from '../dom';
 import type { Json, Material, Scene, SessionMessage, Vec3 } from '../protocol';
 import type { Store } from '../store';
+import type { ChoiceOptions } from './choice';
+import { ChoiceField } from './choice';
 import type { FieldOptions } from './field';
 import { NumberField } from './field';
 import { findingsPanel } from './findings';
+import { loadFields } from './loads';
 import { ThingsPanel } from './things';
+import { isVec3, ofLength } from './vector_field';
 
 type Updater = (session: SessionMessage) => void;
 
@@ -22,22 +26,27 @@ export function presetOf(presets: Record<string, Material>, material: Material):
 
 const dominant = (v: Vec3): number => v.findIndex((x) => Math.abs(x) === Math.max(...v.map(Math.abs)));
 
-/** Gravity of another size along the way it points; downward where there was none. */
-export function gravityOfSize(old: Json | undefined, size: number): Vec3 {
-    const v = (isVec3(old) ? old : [0, 0, 0]) as Vec3;
-    const length = Math.hypot(...v);
-    if (length === 0) return [0, -size, 0];
-    return v.map((x) => (x === 0 ? 0 : Number(((x / length) * size).toPrecision(6)))) as Vec3;
-}
-
 export function gravitySize(value: Json | undefined): number | null {
     if (!isVec3(value)) return null;
     return Number(Math.hypot(...value).toPrecision(6)) * (value[dominant(value)]! > 0 && value[1] > 0 ? -1 : 1);
 }
 
-function isVec3(value: Json | undefined): value is Vec3 {
-    return Array.isArray(value) && value.length === 3 && value.every((x) => typeof x === 'number');
-}
+const levelChoices: ChoiceOptions[] = [
+    {
+        label: 'Prolongation', pointer: '/hierarchy/operator',
+        values: [
+            { value: 'shell', words: 'shell' },
+            { value: 'intrinsic', words: 'intrinsic' },
+            { value: 'blend', words: 'blend' },
+            { value: 'affine', words: 'affine', whyNot: ({ hierarchy }) => (hierarchy.source === 'loop' ? 'Not for levels by subdivision' : null) },
+            { value: 'loop', words: 'loop', whyNot: ({ hierarchy }) => (hierarchy.source === 'loop' ? null : 'Only for levels by subdivision') },
+        ],
+    },
+    {
+        label: 'Bending of previews', pointer: '/hierarchy/bending_on',
+        values: [{ value: 'level', words: 'on the level' }, { value: 'finest', words: 'on the finest' }],
+    },
+];
 
 export class SteeringPanel {
     readonly root = element('aside', { class: 'steering', 'aria-label': 'Parameters' });
@@ -59,7 +68,8 @@ export class SteeringPanel {
 
     private update(session: SessionMessage, scene: Scene): void {
         const names = [scene.bodies, scene.obstacles, scene.handles].map((list) => list.map((part) => part.name));
-        const shape = JSON.stringify([names, scene.name, Object.keys(session.presets)]);
+        const loads = scene.loads.map(({ body, select, force }) => [body, select, force !== undefined]);
+        const shape = JSON.stringify([names, loads, scene.name, Object.keys(session.presets)]);
         if (shape !== this.shape) {
             this.shape = shape;
             this.build(session, scene);
@@ -76,7 +86,7 @@ export class SteeringPanel {
             this.section('Surroundings', true, 0, this.fields([
                 {
                     label: 'Gravity', pointer: '/gravity', unit: 'm/s²', scale: { kind: 'linear', low: 0, high: 20 },
-                    read: gravitySize, write: (size, old) => gravityOfSize(old, size), otherwise: 'scripted',
+                    read: gravitySize, write: (size, old) => ofLength(old, size), otherwise: 'scripted',
                 },
                 {
                     label: 'Friction', pointer: '/contact/friction', min: 0,
@@ -88,6 +98,7 @@ export class SteeringPanel {
                 },
             ])),
             this.things.root,
+            ...this.loads(scene),
             this.section('Time', false, 0, this.fields([
                 {
                     label: 'Time step', pointer: '/solve/time_step', unit: 's', min: 1e-9,
@@ -95,7 +106,7 @@ export class SteeringPanel {
                 },
                 { label: 'Duration', pointer: '/solve/duration', unit: 's', min: 0 },
             ])),
-            this.section('Levels of detail', false, 0, this.fields([
+            this.section('Levels of detail', false, 0, [...this.fields([
                 {
                     label: 'Levels', pointer: '/hierarchy/levels', min: 1, max: 12, isWhole: true,
                     scale: { kind: 'linear', low: 1, high: 8 },
@@ -104,7 +115,7 @@ export class SteeringPanel {
                     label: 'Coarsest vertices', pointer: '/hierarchy/coarsest_vertices', min: 4, isWhole: true,
                     scale: { kind: 'log', low: 50, high: 5000 },
                 },
-            ])),
+            ]), ...levelChoices.map((options) => this.choice(options))]),
         );
         this.root.replaceChildren(...sections);
     }
@@ -120,6 +131,19 @@ export class SteeringPanel {
             this.updaters.push((session) => field.update(session));
             return field.root;
         });
+    }
+
+    private choice(options: ChoiceOptions): HTMLElement {
+        const field = new ChoiceField(options, this.actions);
+        this.updaters.push((session) => field.update(session));
+        return field.root;
+    }
+
+    private loads(scene: Scene): HTMLElement[] {
+        if (scene.loads.length === 0) return [];
+        const { content, update } = loadFields(scene.loads, this.actions);
+        this.updaters.push(update);
+        return [this.section('Loads', true, 0, content)];
     }
 
     private body(session: SessionMessage, index: number): HTMLElement[] {
@@ -149,6 +173,10 @@ export class SteeringPanel {
                     scale: { kind: 'log', low: 0.01, high: 100 },
                 },
                 {
+                    label: 'Strain limit', pointer: `${material}/strain_limit`, unit: '×', min: 1.0001, max: 100,
+                    empty: { value: null, words: 'none' },
+                },
+                {
                     label: 'Pressure', pointer: `${at}/pressure`, unit: 'Pa',
                     scale: { kind: 'signed', high: 1e5, unit: 10 },
                     otherwise: 'scripted; a number here replaces the script',
@@ -160,17 +188,17 @@ export class SteeringPanel {
     private presets(session: SessionMessage, index: number): HTMLElement {
         const pointer = `/bodies/${index}/material`;
         const id = `preset-${index}`;
-        const select = element('select', {
+        const choice = select({
             id, 'data-pointer': pointer,
-            onchange: () => this.actions.set([{ set: pointer, value: select.value }], newGesture()),
+            onchange: () => this.actions.set([{ set: pointer, value: choice.value }], newGesture()),
         });
         const custom = element('option', { value: 'custom', disabled: true }, 'custom');
-        select.append(custom, ...Object.keys(session.presets).map((name) => element('option', { value: name }, name)));
+        choice.append(custom, ...Object.keys(session.presets).map((name) => element('option', { value: name }, name)));
         this.updaters.push(({ scene, presets }) => {
             const material = scene?.bodies[index]?.material;
-            if (material && document.activeElement !== select) select.value = presetOf(presets, material);
-            else if (material) queueMicrotask(() => (select.value = presetOf(presets, material)));
+            if (material && document.activeElement !== choice) choice.value = presetOf(presets, material);
+            else if (material) queueMicrotask(() => (choice.value = presetOf(presets, material)));
         });
-        return element('div', { class: 'field choice' }, element('label', { for: id }, 'Material'), select);
+        return element('div', { class: 'field choice' }, element('label', { for: id }, 'Material'), choice);
     }
 }

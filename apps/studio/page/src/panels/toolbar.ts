@@ -1,8 +1,9 @@
 // Over the view: tools at the left, what is shown at the right, a legend below.
 
 import type { Actions } from '../actions';
+import { whyNot } from '../colorings';
 import type { IconName } from '../dom';
-import { button, element, setPressed } from '../dom';
+import { button, element, select, setPressed } from '../dom';
 import type { ColorBy } from '../protocol';
 import { colorings } from '../protocol';
 import { words } from '../scale';
@@ -38,10 +39,18 @@ export function lookBar(store: Store, actions: Actions, resetCamera: () => void)
         icon: 'detail', text: 'Finest detail', label: 'Show this state on the finest mesh, by prolongation alone', key: 'D', kind: 'chip',
         press: () => actions.look({ detail: !store.state.detail }),
     });
-    const color = element('select', {
-        id: 'color', 'aria-label': 'Colour by', title: 'Colour by (C)',
-        onchange: () => actions.look({ color: color.value as ColorBy }),
-    }, ...colorings.map((value) => element('option', { value }, colorNames[value])));
+    const options = colorings.map((value) => element('option', { value }, colorNames[value]));
+    const color = select({
+        id: 'color', 'aria-label': 'Colour by', onchange: () => actions.look({ color: color.value as ColorBy }),
+    }, ...options);
+    store.watch((state) => [state.detail, state.status?.level, state.status?.levels], (state) => {
+        const reasons = colorings.map((value) => whyNot(value, state));
+        options.forEach((option, i) => {
+            option.disabled = reasons[i] !== null;
+            option.title = reasons[i] ?? '';
+        });
+        color.title = ['Colour by (C)', ...reasons.filter((reason) => reason !== null)].join('. ');
+    });
     store.watch((state) => [state.edges, state.detail, state.color], (state) => {
         setPressed(edges, state.edges);
         setPressed(detail, state.detail);
@@ -52,31 +61,41 @@ export function lookBar(store: Store, actions: Actions, resetCamera: () => void)
         button({ icon: 'frame', label: 'Whole scene in view', key: 'F', kind: 'chip', press: resetCamera }));
 }
 
+/** Why nothing is coloured; empty where something is. */
+export function lackOf(scalars: Float32Array | null, color: ColorBy): string {
+    if (!scalars) return 'A saved frame is kept without its colours';
+    if (scalars.some((value) => Number.isFinite(value))) return '';
+    return color === 'gap' ? 'Nothing is near enough to touch' : 'There is nothing to colour';
+}
+
 /** The colours' meaning. */
 export class Legend {
     readonly root = element('div', { class: 'legend', role: 'img', hidden: true });
     private readonly title = element('span', { class: 'legend-title' });
     private readonly low = element('span');
     private readonly high = element('span');
+    private readonly bar = element('span', { class: 'legend-bar', style: `background: ${cssGradient('to right')}` });
     private last = '';
 
     constructor(private readonly store: Store) {
-        const bar = element('span', { class: 'legend-bar', style: `background: ${cssGradient('to right')}` });
-        this.root.append(this.title, bar, element('span', { class: 'legend-ends' }, this.low, this.high));
+        this.root.append(this.title, this.bar, element('span', { class: 'legend-ends' }, this.low, this.high));
         store.watch((state) => [state.color], (state) => {
             if (state.color === 'none') this.root.hidden = true;
         });
     }
 
-    show(hasScalars: boolean, low: number, high: number): void {
+    show(scalars: Float32Array | null, low: number, high: number): void {
         const { color } = this.store.state;
-        this.root.hidden = color === 'none' || !hasScalars;
-        const text = `${colorNames[color]} ${words(low)} ${words(high)}`;
-        if (this.root.hidden || text === this.last) return;
-        this.last = text;
-        this.title.textContent = colorNames[color];
-        this.low.textContent = `${words(low)} ${colorUnits[color]}`;
-        this.high.textContent = `${words(high)} ${colorUnits[color]}`;
-        this.root.setAttribute('aria-label', `${colorNames[color]} from ${words(low)} to ${words(high)} ${colorUnits[color]}`);
+        this.root.hidden = color === 'none';
+        const [from, to] = [low, high].map((end) => `${words(end)} ${colorUnits[color]}`);
+        const lack = lackOf(scalars, color);
+        const meaning = lack || `${colorNames[color]} from ${from} to ${to}`;
+        if (this.root.hidden || meaning === this.last) return;
+        this.last = meaning;
+        this.bar.hidden = lack !== '';
+        this.title.textContent = lack || colorNames[color];
+        this.low.textContent = lack ? '' : from!;
+        this.high.textContent = lack ? '' : to!;
+        this.root.setAttribute('aria-label', meaning);
     }
 }
