@@ -71,8 +71,17 @@ export class Studio {
     }
 }
 
+interface Seen {
+    x: number;
+    y: number;
+    distance: number;
+}
+
+/** The gizmo's arms are this long, as a share of its distance from the eye. */
+const armLength = 0.08;
+
 interface Hook {
-    plisse: { positions(): number[]; state(): Record<string, unknown> };
+    plisse: { positions(): number[]; state(): Record<string, unknown>; seenAt(place: number[]): Seen };
 }
 
 export class StudioPage {
@@ -135,6 +144,19 @@ export class StudioPage {
 
     positions(): Promise<number[]> {
         return this.page.evaluate(() => (window as unknown as Hook).plisse.positions());
+    }
+
+    /** Drags an arm of the gizmo that sits at a place, by so many pixels along the arm. */
+    async dragGizmo(place: number[], axis: 0 | 1 | 2, pixels: number): Promise<void> {
+        const seen = (at: number[]): Promise<Seen> => this.page.evaluate((p) => (window as unknown as Hook).plisse.seenAt(p), at);
+        const middle = await seen(place);
+        const arm = await seen(place.map((x, k) => (k === axis ? x + armLength * 0.5 * middle.distance : x)));
+        const length = Math.hypot(arm.x - middle.x, arm.y - middle.y);
+        const [dx, dy] = [(arm.x - middle.x) / length, (arm.y - middle.y) / length];
+        await this.page.mouse.move(arm.x, arm.y);
+        await this.page.mouse.down();
+        for (let i = 1; i <= 8; ++i) await this.page.mouse.move(arm.x + (dx * pixels * i) / 8, arm.y + (dy * pixels * i) / 8);
+        await this.page.mouse.up();
     }
 
     async readout(name: 'level' | 'volume' | 'steps' | 'change' | 'state'): Promise<string> {

@@ -3,7 +3,7 @@ import { dropLostColoring } from './colorings';
 import { Connection } from './connection';
 import { element } from './dom';
 import { Meter } from './meter';
-import type { Json, MotionKey, ServerMessage } from './protocol';
+import type { Json, MotionKey, ServerMessage, Vec3 } from './protocol';
 import { curvesPanel } from './panels/curves';
 import { dock } from './panels/dock';
 import { Gallery, acceptDrops } from './panels/gallery';
@@ -150,7 +150,9 @@ onTheme(() => view.applyTheme(isDark()));
 
 // What is shown, for tests and for whoever looks behind the page.
 Object.assign(window, {
-    plisse: { positions: () => Array.from(view.shownPositions ?? []), state: () => store.state },
+    plisse: {
+        positions: () => Array.from(view.shownPositions ?? []), state: () => store.state, seenAt: (place: Vec3) => view.seenAt(place),
+    },
 });
 
 connection.open();

@@ -3,7 +3,7 @@
 import { Box3, Vector3 } from 'three';
 
 import type { BinaryMessage, MeshMessage, PositionsMessage } from '../binary';
-import type { PartsMessage, Pull } from '../protocol';
+import type { PartsMessage, Pull, Vec3 } from '../protocol';
 import type { GizmoTarget, MoveListener } from './gizmo';
 import { Gizmo } from './gizmo';
 import type { GrabHandlers } from './grab';
@@ -120,6 +120,16 @@ export class SceneView {
 
     get shownPositions(): Float32Array | null {
         return this.surface?.positions ?? null;
+    }
+
+    /** Where a place is seen, in pixels of the window, and how far it is from the eye. */
+    seenAt(place: Vec3): { x: number; y: number; distance: number } {
+        const { camera, renderer } = this.stage;
+        const at = new Vector3(...place);
+        const distance = at.distanceTo(camera.position);
+        const { left, top, width, height } = renderer.domElement.getBoundingClientRect();
+        const { x, y } = at.project(camera);
+        return { x: left + (width * (x + 1)) / 2, y: top + (height * (1 - y)) / 2, distance };
     }
 
     private keep(mesh: MeshMessage): void {
