@@ -146,11 +146,15 @@ export class StudioPage {
         return this.page.evaluate(() => (window as unknown as Hook).plisse.positions());
     }
 
+    /** Where a place of the scene is on the screen. */
+    seen(place: number[]): Promise<Seen> {
+        return this.page.evaluate((at) => (window as unknown as Hook).plisse.seenAt(at), place);
+    }
+
     /** Drags an arm of the gizmo that sits at a place, by so many pixels along the arm. */
     async dragGizmo(place: number[], axis: 0 | 1 | 2, pixels: number): Promise<void> {
-        const seen = (at: number[]): Promise<Seen> => this.page.evaluate((p) => (window as unknown as Hook).plisse.seenAt(p), at);
-        const middle = await seen(place);
-        const arm = await seen(place.map((x, k) => (k === axis ? x + armLength * 0.5 * middle.distance : x)));
+        const middle = await this.seen(place);
+        const arm = await this.seen(place.map((x, k) => (k === axis ? x + armLength * 0.5 * middle.distance : x)));
         const length = Math.hypot(arm.x - middle.x, arm.y - middle.y);
         const [dx, dy] = [(arm.x - middle.x) / length, (arm.y - middle.y) / length];
         await this.page.mouse.move(arm.x, arm.y);

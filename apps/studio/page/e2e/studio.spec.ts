@@ -457,6 +457,56 @@ describe('the page', () => {
         await other.context.close();
     });
 
+    it.each(['light', 'dark'] as const)('lets every control be reached by Tab, named and in sight, in %s', async (colorScheme) => {
+        const other = await studio.page({ colorScheme });
+        await other.open('drape');
+        const { page } = other;
+        await page.evaluate(() => {
+            for (const section of document.querySelectorAll('details')) section.open = true;
+            (document.activeElement as HTMLElement).blur();
+        });
+        const wrong: string[] = [];
+        for (let i = 0; i < 150; ++i) {
+            await other.press('Tab');
+            const at = await page.evaluate(() => {
+                const focused = document.activeElement as HTMLElement;
+                if (focused === document.body || focused.dataset.reached) return null;
+                focused.dataset.reached = 'yes';
+                const { left, top, right, bottom } = focused.getBoundingClientRect();
+                const seen = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+                const { outlineStyle, outlineWidth } = getComputedStyle(focused);
+                const labels = [...((focused as HTMLInputElement).labels ?? [])].map((label) => label.textContent);
+                return {
+                    html: focused.outerHTML.slice(0, 140),
+                    named: [focused.getAttribute('aria-label'), ...labels, focused.textContent].some(Boolean),
+                    outlined: outlineStyle === 'solid' && parseFloat(outlineWidth) >= 2,
+                    inside: left >= 0 && top >= 0 && right <= innerWidth + 0.5 && bottom <= innerHeight + 0.5,
+                    uncovered: focused.classList.contains('canvas') || focused.contains(seen),
+                };
+            });
+            if (at === null) break;
+            if (!(at.named && at.outlined && at.inside && at.uncovered)) wrong.push(JSON.stringify(at));
+        }
+        expect(wrong).toEqual([]);
+        const missed = await page.evaluate(() =>
+            [...document.querySelectorAll<HTMLButtonElement>('button, input, select, summary, [tabindex]')]
+                .filter((control) => !control.disabled && control.checkVisibility() && !control.dataset.reached && !control.closest('[inert]'))
+                .map((control) => control.outerHTML.slice(0, 140)));
+        expect(missed).toEqual([]);
+        await other.context.close();
+    });
+
+    it('turns the view by keys', async () => {
+        const other = await studio.page();
+        await other.open('drape');
+        const place = async (): Promise<number> => (await other.seen([0.2, 0, 0])).x;
+        const before = await place();
+        await other.page.locator('.canvas').focus();
+        for (let i = 0; i < 4; ++i) await other.press('ArrowLeft');
+        await expect.poll(async () => Math.abs((await place()) - before)).toBeGreaterThan(10);
+        await other.context.close();
+    });
+
     it('names its keys', async () => {
         await tab.press('Escape');
         await tab.press('?');

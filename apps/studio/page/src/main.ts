@@ -81,6 +81,12 @@ const handlers: ViewHandlers = {
     },
 };
 
+/** Turn, tilt, and share of the distance. */
+const orbitKeys: Record<string, [number, number, number]> = {
+    ArrowLeft: [-0.12, 0, 1], ArrowRight: [0.12, 0, 1], ArrowUp: [0, -0.08, 1], ArrowDown: [0, 0.08, 1],
+    '+': [0, 0, 0.9], '-': [0, 0, 1 / 0.9],
+};
+
 const sceneName = (): string => store.state.session?.scene?.name ?? '';
 let cameraScene = '';
 
@@ -116,7 +122,15 @@ function receive(message: ServerMessage): void {
         for (const file of message.files) download(file);
 }
 
-const host = element('div', { class: 'canvas', role: 'img', 'aria-label': 'The scene in three dimensions' });
+const host = element('div', {
+    class: 'canvas', role: 'application', tabindex: 0, 'aria-label': 'The scene in three dimensions; arrow keys turn it, plus and minus move nearer and away',
+    onkeydown: (event: KeyboardEvent) => {
+        const move = orbitKeys[event.key];
+        if (!move || event.ctrlKey || event.metaKey || event.altKey) return;
+        event.preventDefault();
+        view.stage.orbit(...move);
+    },
+});
 const view: SceneView = new SceneView(host, handlers);
 const legend = new Legend(store);
 const readout = new Readout(store);

@@ -71,7 +71,7 @@ export function startShortcuts(targets: ShortcutTargets): () => void {
             element('li', {}, 'Press ', element('strong', {}, 'Play'), ': the coarse preview moves.'),
             element('li', {}, 'Steer it: change numbers on the right, pull it with the hand, move handles and obstacles. Everything can be undone.'),
             element('li', {}, 'Press ', element('strong', {}, 'Refine'), ': the same state gets sharper, level by level, up to your own mesh.')),
-        element('p', { class: 'quiet' }, 'Drag to turn the view, right-drag to shift it, wheel to come nearer. Hold Ctrl and drag a body to pull it; press Shift when letting go to pin it there.'),
+        element('p', { class: 'quiet' }, 'Drag to turn the view, right-drag to shift it, wheel to come nearer; or Tab to it, and press arrow keys, + and -. Hold Ctrl and drag a body to pull it; press Shift when letting go to pin it there.'),
         element('h2', {}, 'Keys'),
         element('dl', { class: 'keys' }, ...list.flatMap(({ keys, words }) => [
             element('dt', {}, ...keys.split(' ').map((key) => element('kbd', {}, key))), element('dd', {}, words)])),

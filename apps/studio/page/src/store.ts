@@ -64,6 +64,11 @@ export function withToast(state: State, toast: Omit<Toast, 'id'>): State {
     return { ...state, toasts: [...others, { ...toast, id: ++lastToast }] };
 }
 
+/** Of a status that comes before there is a run. */
+const noRun = {
+    level: 0, levels: 1, vertices: 0, phase: '', t: 0, duration: 0, step: 0, equilibrium: false, steps_per_second: null, edit_to_step_ms: null,
+};
+
 /** The state after a message from the server. */
 export function reduce(state: State, message: ServerMessage): State {
     switch (message.type) {
@@ -72,7 +77,7 @@ export function reduce(state: State, message: ServerMessage): State {
         case 'status':
             return {
                 ...state,
-                status: message,
+                status: { ...noRun, ...message },
                 progress: isBusy(message) ? state.progress : null,
             };
         case 'progress': {

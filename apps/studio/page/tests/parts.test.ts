@@ -6,6 +6,7 @@ import { Meter } from '../src/meter';
 import { hintFor, progressOf, wordOf } from '../src/panels/dock';
 import { phrasesOf } from '../src/panels/findings';
 import { selectionWords } from '../src/panels/loads';
+import { levelWords } from '../src/panels/readout';
 import { gravitySize, presetOf } from '../src/panels/steering';
 import { levelRuns } from '../src/panels/timeline';
 import { lackOf } from '../src/panels/toolbar';
@@ -118,6 +119,13 @@ describe('colours', () => {
         expect(lackOf(new Float32Array([NaN, NaN]), 'gap')).toContain('near enough');
         expect(lackOf(null, 'stretch')).toContain('saved frame');
     });
+});
+
+it('levels are told by what they are to the user', () => {
+    expect(levelWords({ level: 0, levels: 4, detail: false })).toBe('Level 0 of 3 · preview');
+    expect(levelWords({ level: 2, levels: 4, detail: false })).toBe('Level 2 of 3');
+    expect(levelWords({ level: 3, levels: 4, detail: false })).toBe('Level 3 of 3 · your mesh');
+    expect(levelWords({ level: 1, levels: 4, detail: true })).toContain('finest mesh');
 });
 
 it('what a load pulls at is told in words', () => {

@@ -25,6 +25,11 @@ const session = (name: string, handles = 0): SessionMessage => ({
 });
 
 describe('the state', () => {
+    it('has numbers before there is a run', () => {
+        const bare = { type: 'status', state: 'building', message: '' } as StatusMessage;
+        expect(reduce(fresh(), bare).status).toMatchObject({ state: 'building', level: 0, levels: 1, step: 0 });
+    });
+
     it('takes samples one by one, and all of them after an undo', () => {
         let state = reduce(fresh(), { type: 'sample', ...sample(1) });
         state = reduce(state, { type: 'sample', ...sample(2) });

@@ -19,6 +19,13 @@ export interface Measures {
     detail: boolean;
 }
 
+/** Which level is shown, and what that is to the user. */
+export function levelWords({ level, levels, detail }: { level: number; levels: number; detail: boolean }): string {
+    if (detail) return `Level ${level} shown on the finest mesh`;
+    const name = level + 1 >= levels ? ' · your mesh' : level === 0 ? ' · preview' : '';
+    return `Level ${level} of ${levels - 1}${name}`;
+}
+
 export class Readout {
     readonly root = element('div', { class: 'readout', 'aria-label': 'State' });
     private readonly level = element('strong', { 'data-readout': 'level' });
@@ -50,16 +57,21 @@ export class Readout {
         this.state.textContent = state.frame === null ? (stateNames[status.state] ?? status.state) : 'saved frame';
         if (state.frame === null) this.set('time', `t ${words(status.t)} of ${words(status.duration)} s`);
         else this.set('time', `t ${words(state.frames[state.frame]?.t)} s`);
-        this.levels = status.levels;
+        this.showLevel(status.levels);
         this.set('speed', status.state === 'playing' && status.steps_per_second ? `${words(status.steps_per_second, 2)} steps/s` : '');
     }
 
-    private levels = 1;
+    private shown = { level: 0, levels: 1, detail: false };
+
+    /** What is shown and how many levels there are come apart, in either order. */
+    private showLevel(levels: number, { level, detail }: { level: number; detail: boolean } = this.shown): void {
+        this.shown = { level, levels, detail };
+        this.level.textContent = levelWords(this.shown);
+        this.root.dataset.level = String(level);
+    }
 
     showMeasures(measures: Measures): void {
-        const name = measures.level + 1 >= this.levels ? ' · your mesh' : measures.level === 0 ? ' · preview' : '';
-        this.level.textContent = measures.detail ? `Level ${measures.level} shown on the finest mesh` : `Level ${measures.level} of ${this.levels - 1}${name}`;
-        this.root.dataset.level = String(measures.level);
+        this.showLevel(this.shown.levels, measures);
         this.root.dataset.volume = measures.volume === null ? '' : String(measures.volume);
         this.root.dataset.steps = measures.stepsPerSecond === null ? '' : measures.stepsPerSecond.toFixed(2);
         this.root.dataset.change = measures.editShown === null ? '' : measures.editShown.toFixed(0);

@@ -43,8 +43,8 @@ const levelChoices: ChoiceOptions[] = [
         ],
     },
     {
-        label: 'Bending of previews', pointer: '/hierarchy/bending_on',
-        values: [{ value: 'level', words: 'on the level' }, { value: 'finest', words: 'on the finest' }],
+        label: 'Bending on', pointer: '/hierarchy/bending_on',
+        values: [{ value: 'level', words: 'level' }, { value: 'finest', words: 'finest' }],
     },
 ];
 

@@ -34,7 +34,7 @@ export class Gizmo {
     ) {
         this.controls = new TransformControls(stage.camera, stage.renderer.domElement);
         this.controls.size = 0.85;
-        this.controls.setColors(0xd9534f, 0x4f9d69, 0x4f7bd9, 0xf2b705);
+        this.controls.setColors(0xd9534f, 0x4f9d69, 0x2138c9, 0xf2b705);
         stage.scene.add(this.anchor, this.controls.getHelper());
         this.controls.addEventListener('change', () => stage.invalidate());
         this.controls.addEventListener('objectChange', () => this.report(false));

@@ -2,7 +2,7 @@
 
 import {
     Box3, DirectionalLight, HemisphereLight, Mesh, PCFSoftShadowMap, PerspectiveCamera, PlaneGeometry, Scene,
-    ShadowMaterial, Vector3, WebGLRenderer,
+    ShadowMaterial, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
@@ -42,6 +42,18 @@ export class Stage {
         this.controls.addEventListener('change', () => this.invalidate());
         new ResizeObserver(() => this.resize()).observe(host);
         this.resize();
+    }
+
+    /** Turns the view, in radians, and moves the eye to `nearer` times its distance. */
+    orbit(turn: number, tilt: number, nearer: number): void {
+        const offset = this.camera.position.clone().sub(this.controls.target);
+        const place = new Spherical().setFromVector3(offset);
+        place.theta += turn;
+        place.phi += tilt;
+        place.radius = Math.min(this.controls.maxDistance, Math.max(this.controls.minDistance, place.radius * nearer));
+        this.camera.position.setFromSpherical(place.makeSafe()).add(this.controls.target);
+        this.controls.update();
+        this.invalidate();
     }
 
     get groundHeight(): number {
