@@ -93,7 +93,7 @@ export function reduce(state: State, message: ServerMessage): State {
         case 'samples':
             return { ...state, samples: message.samples };
         case 'frames': {
-            const frames = [...state.frames.slice(0, message.from), ...message.list].slice(0, message.count);
+            const frames = [...state.frames.slice(0, message.from), ...message.list];
             const frame = state.frame !== null && state.frame >= frames.length ? null : state.frame;
             return { ...state, frames, frame };
         }

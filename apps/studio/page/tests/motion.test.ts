@@ -63,4 +63,9 @@ describe('a motion', () => {
         expectNear(pose.about, rest);
         expectNear(applied(pose, [4, -1, 0]), applied(poseAt(turned, 0), [4, -1, 0]));
     });
+
+    it('keeps the pivot that it names', () => {
+        const pose = currentPose({ pointer: '', keys, place: [5, 5, 5], axes: 'xyz', t: 4, timeStep: 0.1 });
+        expect(pose).toEqual(poseAt(keys, 4));
+    });
 });

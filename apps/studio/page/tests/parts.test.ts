@@ -165,6 +165,16 @@ it('the meter counts a change as shown by a step after the server knew of it', (
     meter.positions(1040, 5);
     meter.positions(1090, 6);
     expect(meter.editShown).toBe(90);
+    // Of a drag the first change counts, but not one of long ago.
+    for (const now of [1200, 1300]) meter.edited(now, 6);
+    meter.acknowledged(6);
+    meter.positions(1350, 7);
+    expect(meter.editShown).toBe(150);
+    meter.edited(1400, 7);
+    meter.edited(5000, 7);
+    meter.acknowledged(7);
+    meter.positions(5060, 8);
+    expect(meter.editShown).toBe(60);
     for (let i = 0; i < 30; ++i) meter.step(2000 + i * 50);
     expect(meter.stepsPerSecond(3450)).toBeCloseTo(20);
     expect(meter.stepsPerSecond(9000)).toBeNull();
@@ -181,5 +191,14 @@ it('a throttle sends the first at once and the last in the end', () => {
     throttle.push(10);
     throttle.flush();
     expect(sent).toEqual([0, 9, 10]);
+    throttle.push(11);
+    throttle.push(12);
+    vi.advanceTimersByTime(10);
+    throttle.flush();
+    throttle.push(13);
+    vi.advanceTimersByTime(29);
+    expect(sent).toEqual([0, 9, 10, 12]);
+    vi.advanceTimersByTime(1);
+    expect(sent).toEqual([0, 9, 10, 12, 13]);
     vi.useRealTimers();
 });

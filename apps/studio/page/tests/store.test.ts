@@ -63,6 +63,8 @@ describe('the state', () => {
         expect(state.toasts.map((toast) => toast.file)).toEqual(['drape.json', 'drape.edits.json']);
         for (let i = 0; i < 2; ++i) state = reduce(state, { type: 'error', message: 'no' });
         expect(state.toasts.filter((toast) => toast.kind === 'error').length).toBe(1);
+        for (let i = 0; i < 9; ++i) state = reduce(state, { type: 'error', message: `no ${i}` });
+        expect(state.toasts.map((toast) => toast.text)).toEqual(['no 5', 'no 6', 'no 7', 'no 8']);
     });
 
     it('has a scene to show unless it is empty', () => {

@@ -41,6 +41,7 @@ describe('a surface', () => {
         const hit = firstHit(positions, corners, [0.1, 0.2, 5], [0, 0, -1]);
         expect(hit?.at[2]).toBeCloseTo(0.7);
         expect(hit?.vertex).toBe(3);
+        expect(firstHit(positions, corners, [0.1, 0.2, -5], [0, 0, 1])?.at[2]).toBeCloseTo(0);
         expect(firstHit(positions, corners, [0.1, 0.2, 5], [0, 0, 1])).toBeNull();
         expect(firstHit(positions, corners, [2, 2, 5], [0, 0, -1])).toBeNull();
     });
