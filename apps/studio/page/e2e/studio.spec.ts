@@ -49,6 +49,16 @@ async function pause(page: StudioPage): Promise<void> {
     await page.waitForState('idle', 'at_rest');
 }
 
+/** What is read twice in a row, a little apart. */
+async function settled<T>(read: () => Promise<T>): Promise<T> {
+    for (let last = await read(); ; ) {
+        await tab.page.waitForTimeout(150);
+        const next = await read();
+        if (JSON.stringify(next) === JSON.stringify(last)) return next;
+        last = next;
+    }
+}
+
 /** By the key. A state between two levels may be refused, with a reason that is shown; the next is another. */
 async function refine(page: StudioPage): Promise<void> {
     const word = page.page.locator('.dock .word');
@@ -270,9 +280,17 @@ describe('the gizmo', () => {
                 .sort((a, b) => away(before, a, place) - away(before, b, place))[0]!;
             await tab.page.locator('.thing', { hasText: name }).click();
             await tab.dragGizmo(place, axis, pixels);
-            const moved = async (): Promise<number> =>
-                (await tab.state<Known>()).session.scene[list][0]!.motion.at(-1)?.translate?.[axis] ?? 0;
+            const motion = async (): Promise<Moved['motion']> => (await tab.state<Known>()).session.scene[list][0]!.motion;
+            const moved = async (): Promise<number> => (await motion()).at(-1)?.translate?.[axis] ?? 0;
             await expect.poll(async () => Math.abs(await moved())).toBeGreaterThan(0.02);
+            // Another drag is another change.
+            const once = await settled(motion);
+            const further = once.at(-1)!.translate!;
+            await tab.dragGizmo(place.map((x, k) => x + further[k]!), axis, -pixels / 2);
+            await expect.poll(motion).not.toEqual(once);
+            await settled(motion);
+            await tab.press('Control+z');
+            await expect.poll(motion).toEqual(once);
             for (let i = 0; i < 2; ++i) {
                 const { step } = (await tab.state<Known>()).status;
                 await tab.press('.');
@@ -284,7 +302,7 @@ describe('the gizmo', () => {
             expect(Math.sign(shift)).toBe(list === 'obstacles' ? -1 : 1);
             expect(after[nearest * 3 + axis]! - before[nearest * 3 + axis]!).toBeCloseTo(shift, 3);
             await tab.press('Control+z');
-            await expect.poll(async () => (await tab.state<Known>()).session.scene[list][0]!.motion).toEqual(session.scene[list][0]!.motion);
+            await expect.poll(motion).toEqual(session.scene[list][0]!.motion);
             await expect.poll(async () => furthest(await tab.positions(), before)).toBe(0);
             await tab.press('1');
         });
