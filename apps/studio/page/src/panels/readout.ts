@@ -57,21 +57,25 @@ export class Readout {
         this.state.textContent = state.frame === null ? (stateNames[status.state] ?? status.state) : 'saved frame';
         if (state.frame === null) this.set('time', `t ${words(status.t)} of ${words(status.duration)} s`);
         else this.set('time', `t ${words(state.frames[state.frame]?.t)} s`);
-        this.showLevel(status.levels);
+        this.running = { level: status.level, levels: status.levels };
+        this.showLevel();
         this.set('speed', status.state === 'playing' && status.steps_per_second ? `${words(status.steps_per_second, 2)} steps/s` : '');
     }
 
-    private shown = { level: 0, levels: 1, detail: false };
+    private running = { level: 0, levels: 1 };
+    private shown = { level: 0, detail: false };
 
-    /** What is shown and how many levels there are come apart, in either order. */
-    private showLevel(levels: number, { level, detail }: { level: number; detail: boolean } = this.shown): void {
-        this.shown = { level, levels, detail };
-        this.level.textContent = levelWords(this.shown);
+    /** What is shown and what runs are told apart, in either order. The finest detail is that of the level that runs. */
+    private showLevel(): void {
+        const { detail } = this.shown;
+        const level = detail ? this.running.level : this.shown.level;
+        this.level.textContent = levelWords({ level, levels: this.running.levels, detail });
         this.root.dataset.level = String(level);
     }
 
     showMeasures(measures: Measures): void {
-        this.showLevel(this.shown.levels, measures);
+        this.shown = { level: measures.level, detail: measures.detail };
+        this.showLevel();
         this.root.dataset.volume = measures.volume === null ? '' : String(measures.volume);
         this.root.dataset.steps = measures.stepsPerSecond === null ? '' : measures.stepsPerSecond.toFixed(2);
         this.root.dataset.change = measures.editShown === null ? '' : measures.editShown.toFixed(0);

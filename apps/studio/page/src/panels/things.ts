@@ -83,7 +83,7 @@ export class ThingsPanel {
         this.place.hidden = !target;
         if (!target) return;
         this.inputs.forEach((input, k) => {
-            if (document.activeElement !== input) input.value = words(Math.round(target.place[k]! * 1e6) / 1e6, 5);
+            if (document.activeElement !== input) input.value = words(Math.round(target.place[k]! * 1e5) / 1e5, 4);
         });
     }
 
