@@ -270,7 +270,7 @@ describe('the drape', () => {
     });
 });
 
-describe('the gizmo', () => {
+describe.skipIf(isFake)('the gizmo', () => {
     it.each([['obstacles', 'ball', 1, -60], ['handles', 'crown', 0, 50]] as const)(
         'moves one of the %s, and undo puts it back', async (list, name, axis, pixels) => {
             await tab.open('drape');
