@@ -57,7 +57,9 @@ export class FakeSession {
 
     receive(page: Page, message: PageMessage): void {
         switch (message.type) {
-            case 'open': return this.open(message.gallery);
+            case 'open':
+                if ('gallery' in message) return this.open(message.gallery);
+                return this.tell({ type: 'error', message: 'the fake opens no files', in_answer_to: 'open' }, [page]);
             case 'play': return this.play();
             case 'pause': return this.rest('idle');
             case 'step': this.rest('idle'); return this.advance();

@@ -427,6 +427,22 @@ describe.skipIf(isFake)('a scene of one’s own', () => {
         await step();
         await expect.poll(async () => furthest(await tab.positions(), before)).toBeGreaterThan(0);
     });
+
+    it('is opened again as it was saved, by its name or as the last session', async () => {
+        const before = await tab.positions();
+        await tab.press('Control+s');
+        await tab.page.locator('#save-name').fill('kept');
+        await tab.press('Enter');
+        await tab.page.locator('.toast', { hasText: 'kept.json' }).waitFor();
+        for (const file of ['kept.json', 'last-session.json']) {
+            await tab.open('can');
+            await tab.page.getByRole('button', { name: 'Open another scene' }).click();
+            await tab.page.locator(`.saved-scene[data-file="${file}"]`).click();
+            await expect.poll(async () => (await parameters()).name).toBe('loaded');
+            await tab.waitForState('idle');
+            await expect.poll(async () => JSON.stringify(await tab.positions()) === JSON.stringify(before)).toBe(true);
+        }
+    });
 });
 
 describe('a file', () => {

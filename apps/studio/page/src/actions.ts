@@ -111,10 +111,11 @@ export class Actions {
         this.showFrame(null);
     }
 
-    async openGallery(id: string): Promise<void> {
+    /** Opens a scene of the gallery, or one that has been saved. */
+    async openScene(which: { gallery: string } | { file: string }): Promise<void> {
         if (!(await this.mayLeave())) return;
         this.store.update({ gallery: false, unusable: null });
-        this.send({ type: 'open', gallery: id });
+        this.send({ type: 'open', ...which });
     }
 
     async openFile(file: File): Promise<void> {

@@ -54,6 +54,7 @@ export interface Edit {
 
 export type PageMessage =
     | { type: 'open'; gallery: string }
+    | { type: 'open'; file: string }
     | { type: 'play' | 'pause' | 'step' | 'undo' | 'redo' | 'stop' | 'preview' | 'restart' }
     | { type: 'set'; edits: Edit[]; gesture: string }
     | { type: 'grab'; id: string; vertex: number; to: Vec3 }

@@ -45,6 +45,21 @@ export async function fetchGallery(): Promise<GalleryEntry[]> {
     return (await response.json()) as GalleryEntry[];
 }
 
+const lastSession = 'last-session.json';
+
+/** The scenes among the files of a session: the one that was kept by itself comes first. */
+export function savedScenes(names: string[]): { file: string; words: string }[] {
+    const scenes = names.filter((name) => name.endsWith('.json') && !name.endsWith('.edits.json'));
+    const saved = scenes.filter((name) => name !== lastSession).map((file) => ({ file, words: file.slice(0, -'.json'.length) }));
+    return scenes.includes(lastSession) ? [{ file: lastSession, words: 'Go on where the last session ended' }, ...saved] : saved;
+}
+
+export async function fetchSavedScenes(): Promise<{ file: string; words: string }[]> {
+    const response = await fetch('/api/files');
+    if (!response.ok) throw new Error(`the list of files answered ${response.status}`);
+    return savedScenes(((await response.json()) as { name: string }[]).map((entry) => entry.name));
+}
+
 export function fileAddress(name: string): string {
     return `/api/files/${encodeURIComponent(name)}`;
 }

@@ -16,7 +16,7 @@ import type { Scale } from '../src/scale';
 import { fromFraction, toFraction, words } from '../src/scale';
 import { initialState } from '../src/store';
 import { Throttle } from '../src/throttle';
-import { destination } from '../src/uploads';
+import { destination, savedScenes } from '../src/uploads';
 
 describe('sliders', () => {
     it.each<[Scale, number]>([
@@ -201,4 +201,11 @@ it('a throttle sends the first at once and the last in the end', () => {
     vi.advanceTimersByTime(1);
     expect(sent).toEqual([0, 9, 10, 12, 13]);
     vi.useRealTimers();
+});
+
+it('finds the scenes among what was saved, the last session first', () => {
+    const files = ['a.json', 'a.edits.json', 'a.gltf', 'last-session.edits.json', 'last-session.json', 'z.json'];
+    expect(savedScenes(files).map(({ file }) => file)).toEqual(['last-session.json', 'a.json', 'z.json']);
+    expect(savedScenes(files)[1]!.words).toBe('a');
+    expect(savedScenes(['b.usda'])).toEqual([]);
 });

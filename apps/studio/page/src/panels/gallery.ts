@@ -5,11 +5,12 @@ import { button, element, icon } from '../dom';
 import type { GalleryEntry } from '../protocol';
 import type { Store } from '../store';
 import { hasScene } from '../store';
-import { acceptedFiles, fetchGallery } from '../uploads';
+import { acceptedFiles, fetchGallery, fetchSavedScenes } from '../uploads';
 
 export class Gallery {
     readonly root = element('section', { class: 'gallery', 'aria-label': 'Scenes' });
     private readonly cards = element('div', { class: 'cards' });
+    private readonly saved = element('nav', { class: 'saved', 'aria-label': 'Saved scenes', hidden: true });
     private readonly back: HTMLElement;
     private hasCards = false;
     private isFetching = false;
@@ -27,12 +28,15 @@ export class Gallery {
                 element('h1', {}, 'Choose something to shape'),
                 element('p', {}, 'A coarse preview moves at once; steer it by hand, then press Refine.'),
                 this.back),
-            this.cards, this.dropZone()));
+            this.saved, this.cards, this.dropZone()));
         this.cards.append(...Array.from({ length: 6 }, () => element('div', { class: 'card waiting' })));
         store.watch((state) => [state.gallery, hasScene(state), state.connection, state.status], (state) => {
+            const wasHidden = this.root.hidden;
             this.root.hidden = !(state.gallery || (state.status !== null && !hasScene(state)));
             this.back.hidden = !hasScene(state);
-            if (!this.root.hidden && state.connection === 'open') void this.load();
+            if (this.root.hidden || state.connection !== 'open') return;
+            void this.load();
+            if (wasHidden || this.saved.hidden) void this.loadSaved();
         });
     }
 
@@ -49,11 +53,23 @@ export class Gallery {
         this.isFetching = false;
     }
 
+    private async loadSaved(): Promise<void> {
+        try {
+            const scenes = await fetchSavedScenes();
+            this.saved.hidden = scenes.length === 0;
+            this.saved.replaceChildren(element('span', {}, 'Saved here'), ...scenes.map(({ file, words }) => element('button', {
+                type: 'button', class: 'saved-scene', 'data-file': file, onclick: () => void this.actions.openScene({ file }),
+            }, words)));
+        } catch {
+            this.store.toast('error', 'What has been saved could not be listed.');
+        }
+    }
+
     private card(entry: GalleryEntry): HTMLElement {
         const facts = `${entry.vertices.toLocaleString('en')} vertices · ${entry.levels} levels`;
         return element('button', {
             type: 'button', class: 'card', 'data-gallery': entry.id, 'aria-label': `${entry.title}: ${entry.words}`,
-            onclick: () => void this.actions.openGallery(entry.id),
+            onclick: () => void this.actions.openScene({ gallery: entry.id }),
         },
             element('img', { src: entry.picture, alt: '', loading: 'lazy', draggable: 'false' }),
             element('span', { class: 'card-text' },
