@@ -151,14 +151,23 @@ export class StudioPage {
         return this.page.evaluate((at) => (window as unknown as Hook).plisse.seenAt(at), place);
     }
 
+    /** Waits until what has been asked for is on the screen. */
+    private async drawn(): Promise<void> {
+        await this.page.evaluate(() => new Promise((next) => requestAnimationFrame(() => requestAnimationFrame(next))));
+    }
+
     /** Drags an arm of the gizmo that sits at a place, by so many pixels along the arm. */
     async dragGizmo(place: number[], axis: 0 | 1 | 2, pixels: number): Promise<void> {
+        // The gizmo is where it was last drawn, and what is under the pointer decides in which plane it is dragged.
+        await this.drawn();
         const middle = await this.seen(place);
         const arm = await this.seen(place.map((x, k) => (k === axis ? x + armLength * 0.5 * middle.distance : x)));
         const length = Math.hypot(arm.x - middle.x, arm.y - middle.y);
         const [dx, dy] = [(arm.x - middle.x) / length, (arm.y - middle.y) / length];
         await this.page.mouse.move(arm.x, arm.y);
+        await this.drawn();
         await this.page.mouse.down();
+        await this.drawn();
         for (let i = 1; i <= 8; ++i) await this.page.mouse.move(arm.x + (dx * pixels * i) / 8, arm.y + (dy * pixels * i) / 8);
         await this.page.mouse.up();
     }
