@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds progress_interval{100};
+constexpr int most_refusals = 3; ///< of one refinement; after each a step leads to another state
 
 double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
@@ -154,10 +155,14 @@ void Studio::do_task(const Task& task) {
 }
 
 void Studio::advance() {
-    if (state_ == State::refining && session_->is_at_rest() && session_->run().level() < refine_to_)
+    const bool has_farther_to_go = state_ == State::refining && session_->run().level() < refine_to_;
+    if (has_farther_to_go && session_->is_at_rest())
+        return refine_once();
+    const int steps_before = session_->steps();
+    take_step();
+    // A state that could not be refined has been left now.
+    if (has_farther_to_go && refusals_ > 0 && state_ == State::refining && session_->steps() > steps_before)
         refine_once();
-    else
-        take_step();
 }
 
 void Studio::take_step() {
@@ -195,6 +200,8 @@ void Studio::end_of_level(Session::StepEnd end) {
 void Studio::refine_once() {
     std::string reason;
     if (session_->refine(reason)) {
+        refusals_ = 0;
+        message_.clear();
         steps_are_long_ = true;
         keep_frames();
         show_all();
@@ -206,7 +213,8 @@ void Studio::refine_once() {
     if (cancelled())
         return;
     message_ = reason;
-    set_state(State::idle);
+    if (session_->is_at_rest() || ++refusals_ > most_refusals)
+        set_state(State::idle);
 }
 
 /// A disk that is full is no reason to stop.

@@ -128,7 +128,7 @@ private:
     // What follows belongs to the thread.
     std::unique_ptr<Session> session_;
     State state_ = State::empty;
-    int refine_to_ = 0;
+    int refine_to_ = 0, refusals_ = 0;
     std::string file_name_ = "scene", message_;
     std::vector<NewFrame> frames_; ///< that the run has saved since the last were kept
     std::map<ClientId, Show> shows_;

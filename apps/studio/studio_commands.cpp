@@ -148,6 +148,7 @@ void Studio::perform(ClientId, const Refine& refine) {
     if (run.level() == run.last_level())
         throw InputError("refine", "this is the finest level", "go back to the preview, or let it settle");
     refine_to_ = refine.to_finest ? run.last_level() : run.level() + 1;
+    refusals_ = 0;
     message_.clear();
     set_state(State::refining);
     refine_once();

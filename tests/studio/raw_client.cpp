@@ -147,7 +147,12 @@ std::string request(std::string_view method, std::string_view target, std::uint1
     const std::string host = "127.0.0.1:" + std::to_string(port);
     std::string text;
     text.append(method).append(" ").append(target).append(" HTTP/1.1\r\nHost: ").append(host);
-    text.append("\r\nOrigin: http://").append(host).append("\r\nCookie: ").append(cookie_name(port)).append("=").append(token);
+    text.append("\r\nOrigin: http://")
+        .append(host)
+        .append("\r\nCookie: ")
+        .append(cookie_name(port))
+        .append("=")
+        .append(token);
     text.append("\r\n").append(more_lines);
     if (method == "POST")
         text.append("Content-Length: ").append(std::to_string(body.size())).append("\r\n");

@@ -36,7 +36,8 @@ TEST(Server, TheAddressOpensThePageAndTheCookieTheRest) {
     EXPECT_EQ(page.status, 200);
     EXPECT_EQ(page.body, "<!doctype html>");
     EXPECT_EQ(page.fields.at("content-type"), "text/html");
-    EXPECT_EQ(page.fields.at("set-cookie"), cookie_name(running.port()) + "=" + running.token + "; Path=/; HttpOnly; SameSite=Strict");
+    EXPECT_EQ(page.fields.at("set-cookie"),
+              cookie_name(running.port()) + "=" + running.token + "; Path=/; HttpOnly; SameSite=Strict");
     EXPECT_EQ(page.fields.at("cache-control"), "no-store");
     EXPECT_EQ(page.fields.at("referrer-policy"), "no-referrer");
     EXPECT_EQ(page.fields.at("x-content-type-options"), "nosniff");
@@ -94,8 +95,8 @@ TEST(Server, OtherOriginsAreRefused) {
     const std::uint16_t port = running.port();
     const std::string host = "127.0.0.1:" + std::to_string(port);
     const auto status = [&](const std::string& method, const std::string& target, const std::string& lines) {
-        return ask(port, method + " " + target + " HTTP/1.1\r\nHost: " + host +
-                             "\r\nCookie: " + cookie_name(port) + "=" + running.token + "\r\n" + lines + "\r\n")
+        return ask(port, method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\nCookie: " + cookie_name(port) +
+                             "=" + running.token + "\r\n" + lines + "\r\n")
             .status;
     };
     const std::string upgrade = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
