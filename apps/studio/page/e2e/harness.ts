@@ -136,6 +136,13 @@ export class StudioPage {
             scene,
         );
         await this.page.waitForFunction(() => (window as unknown as Hook).plisse.positions().length > 0);
+        await this.dismissMessages();
+    }
+
+    /** So that none lies where the pointer goes next. */
+    async dismissMessages(): Promise<void> {
+        for (const button of await this.page.locator('.toast').getByRole('button', { name: 'Dismiss' }).all())
+            await button.click({ timeout: 1000 }).catch(() => undefined);
     }
 
     state<T>(): Promise<T> {
