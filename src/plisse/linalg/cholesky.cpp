@@ -8,9 +8,7 @@
 
 #include <cblas.h>
 
-/// LAPACK's Cholesky factorisation of a dense matrix, which OpenBLAS has and its C header leaves out.
-extern "C" void spotrf_(const char* triangle, const int* size, float* matrix, const int* stride, int* failed_at);
-extern "C" void dpotrf_(const char* triangle, const int* size, double* matrix, const int* stride, int* failed_at);
+#include <plisse/linalg/panel_cholesky.h>
 
 namespace plisse {
 
@@ -25,28 +23,6 @@ template <typename Vector>
 void grow(Vector& storage, std::size_t size) {
     if (static_cast<std::size_t>(storage.size()) < size)
         storage.resize(static_cast<Eigen::Index>(size + size / 4));
-}
-
-/// L of the topmost rows of a panel whose columns are `stride` apart. False when they are not positive definite.
-bool factorize_block(int pivots, float* panel, int stride) {
-    int failed_at = 0;
-    spotrf_("L", &pivots, panel, &stride, &failed_at);
-    return failed_at == 0;
-}
-bool factorize_block(int pivots, double* panel, int stride) {
-    int failed_at = 0;
-    dpotrf_("L", &pivots, panel, &stride, &failed_at);
-    return failed_at == 0;
-}
-
-/// The rows B of a panel below its L become B inverse(L').
-void solve_below(int rows, int pivots, float* panel, int stride) {
-    cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, rows, pivots, 1, panel, stride,
-                panel + pivots, stride);
-}
-void solve_below(int rows, int pivots, double* panel, int stride) {
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, rows, pivots, 1, panel, stride,
-                panel + pivots, stride);
 }
 
 /// Lower triangle of C (rows x rows) becomes kept C - B B'.
@@ -92,8 +68,8 @@ VecX SparseCholesky<Scalar>::solve(const FrontPlan& plan, const VecX& right_hand
     const auto pivots_of = [&](int f) { return x.segment(3 * e.first_pivot[at(f)], plan.pivot_size(f)); };
     const auto carried_of = [&](int f) { return carried_.segment(3 * e.reach_starts[at(f)], plan.reach_size(f)); };
     const auto panel_of = [&](int f) {
-        const int size = plan.front_size(f);
-        return PanelMap(panels_.data() + plan.panel_start(f), size, plan.pivot_size(f), Eigen::OuterStride<>(size));
+        return PanelMap(panels_.data() + plan.panel_start(f), plan.front_size(f), plan.pivot_size(f),
+                        Eigen::OuterStride<>(plan.panel_rows(f)));
     };
     plan.visit_upwards([&](int f) {
         auto pivots = pivots_of(f);
@@ -137,20 +113,21 @@ VecX SparseCholesky<Scalar>::solve(const FrontPlan& plan, const VecX& right_hand
 template <typename Scalar>
 void SparseCholesky<Scalar>::assemble(const FrontPlan& plan, int front, const std::vector<Mat3>& blocks, double shift) {
     const int size = plan.front_size(front), reach = plan.reach_size(front), pivots = plan.pivot_size(front);
+    const int panel_rows = plan.panel_rows(front);
     const auto& children = plan.elimination().children[at(front)];
     std::vector<std::size_t> taken(children.size(), 0); // columns of blocks of each child's update
     for (int row = 0; row < (children.empty() ? pivots : size); row += 3) {
         const bool pivotal = row < pivots;
-        const int stride = pivotal ? size : reach;
+        const int stride = pivotal ? panel_rows : reach, height = (pivotal ? panel_rows : size) - row;
         Scalar* column = pivotal // from its diagonal block down
-                             ? panels_.data() + plan.panel_start(front) + at(row) * at(size + 1)
+                             ? panels_.data() + plan.panel_start(front) + at(row) * at(panel_rows + 1)
                              : updates_.data() + plan.update_start(front) + at(row - pivots) * at(reach + 1);
         for (int b = 0; b < 3; ++b)
-            std::fill_n(column + b * stride, size - row, Scalar(0));
+            std::fill_n(column + b * stride, height, Scalar(0));
         if (pivotal)
-            place_system_column(plan, plan.elimination().first_pivot[at(front)] + row / 3, size, blocks);
+            place_system_column(plan, plan.elimination().first_pivot[at(front)] + row / 3, stride, blocks);
         for (int b = 0; pivotal && b < 3; ++b)
-            column[b * (size + 1)] += static_cast<Scalar>(shift);
+            column[b * (stride + 1)] += static_cast<Scalar>(shift);
         for (std::size_t c = 0; c < children.size(); ++c) {
             const auto place = plan.elimination().place_of(children[c]);
             if (taken[c] < place.size() && 3 * place[taken[c]] == row)
@@ -159,9 +136,9 @@ void SparseCholesky<Scalar>::assemble(const FrontPlan& plan, int front, const st
     }
 }
 
-/// Copies the system's blocks of one pivot into their places in the panel, whose columns are `size` apart.
+/// Copies the system's blocks of one pivot into their places in the panel, whose columns are `stride` apart.
 template <typename Scalar>
-void SparseCholesky<Scalar>::place_system_column(const FrontPlan& plan, int pivot, int size,
+void SparseCholesky<Scalar>::place_system_column(const FrontPlan& plan, int pivot, int stride,
                                                  const std::vector<Mat3>& blocks) {
     for (const FrontPlan::Placement& placement : plan.placements_of(pivot)) {
         const double* source = blocks[at(placement.number)].data();
@@ -169,7 +146,7 @@ void SparseCholesky<Scalar>::place_system_column(const FrontPlan& plan, int pivo
         Scalar* target = panels_.data() + placement.target;
         for (int b = 0; b < 3; ++b)
             for (int a = 0; a < 3; ++a)
-                target[b * size + a] = static_cast<Scalar>(source[b * across + a * down]);
+                target[b * stride + a] = static_cast<Scalar>(source[b * across + a * down]);
     }
 }
 
@@ -196,18 +173,14 @@ void SparseCholesky<Scalar>::add_update_column(const FrontPlan& plan, int child,
 /// Turns the panel of an assembled front into columns of the factor, and subtracts them from its update.
 template <typename Scalar>
 bool SparseCholesky<Scalar>::eliminate(const FrontPlan& plan, int front) {
-    const int size = plan.front_size(front), reach = plan.reach_size(front), pivots = plan.pivot_size(front);
+    const int rows = plan.panel_rows(front), reach = plan.reach_size(front), pivots = plan.pivot_size(front);
     Scalar* panel = panels_.data() + plan.panel_start(front);
-    if (!factorize_block(pivots, panel, size))
+    if (!factorize_panel(rows, pivots, panel))
         return false;
-    for (int p = 0; p < pivots; ++p) // LAPACK lets through what is not a number
-        if (!(panel[p * (std::ptrdiff_t{size} + 1)] > 0))
-            return false;
     if (reach == 0)
         return true;
-    solve_below(reach, pivots, panel, size);
     const Scalar updated = plan.elimination().children[at(front)].empty() ? 0 : 1; // 0 clears what the memory holds
-    subtract_square(reach, pivots, panel + pivots, size, updated, updates_.data() + plan.update_start(front));
+    subtract_square(reach, pivots, panel + pivots, rows, updated, updates_.data() + plan.update_start(front));
     return true;
 }
 

@@ -23,7 +23,7 @@ private:
     using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
     void assemble(const FrontPlan& plan, int front, const std::vector<Mat3>& blocks, double shift);
-    void place_system_column(const FrontPlan& plan, int pivot, int size, const std::vector<Mat3>& blocks);
+    void place_system_column(const FrontPlan& plan, int pivot, int stride, const std::vector<Mat3>& blocks);
     void add_update_column(const FrontPlan& plan, int child, std::size_t j, Scalar* column, int stride);
     bool eliminate(const FrontPlan& plan, int front);
 

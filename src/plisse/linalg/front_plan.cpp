@@ -37,7 +37,7 @@ void FrontPlan::adapt_to(const NewtonSystem& system) {
 
     panel_starts_.assign(1, 0);
     for (int f = 0; f < elimination_.front_count(); ++f)
-        panel_starts_.push_back(panel_starts_.back() + at(front_size(f)) * at(pivot_size(f)));
+        panel_starts_.push_back(panel_starts_.back() + at(panel_rows(f)) * at(pivot_size(f)));
     place_blocks(system);
     task_cost_ = worthwhile_task_cost();
     lay_out_updates();
@@ -90,7 +90,7 @@ void FrontPlan::place_blocks(const NewtonSystem& system) {
         const int pivot = std::min(a, b), f = front_of[at(pivot)];
         const int column = row_in_front(f, pivot), row = row_in_front(f, std::max(a, b));
         placements_[next[at(pivot)]++] = {system.block_numbers()[at(k)], b < a,
-                                          panel_starts_[at(f)] + 3 * at(column) * at(front_size(f)) + 3 * at(row)};
+                                          panel_starts_[at(f)] + 3 * at(column) * at(panel_rows(f)) + 3 * at(row)};
     });
 }
 

@@ -7,6 +7,7 @@
 #include <plisse/base/parallel.h>
 #include <plisse/linalg/elimination.h>
 #include <plisse/linalg/newton_system.h>
+#include <plisse/linalg/panel_cholesky.h>
 
 namespace plisse {
 
@@ -37,7 +38,11 @@ public:
     int pivot_size(int front) const { return 3 * elimination_.pivot_count(front); }
     int reach_size(int front) const { return 3 * static_cast<int>(elimination_.reach_of(front).size()); }
 
-    /// A front's panel is its columns of the factor: all its rows times its pivots, column by column.
+    /// A front's panel is its columns of the factor: all its rows times its pivots, column by column, with as many rows
+    /// of no meaning at the end of each as factorize_panel wants.
+    int panel_rows(int front) const {
+        return (front_size(front) + panel_row_multiple - 1) / panel_row_multiple * panel_row_multiple;
+    }
     std::size_t panel_start(int front) const { return panel_starts_[static_cast<std::size_t>(front)]; }
     std::size_t panel_room() const { return panel_starts_.back(); }
     /// Its update is what it leaves to its parent: the lower triangle of reach times reach.
