@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -70,7 +71,9 @@ private:
 
     /// The boxes of a leaf side by side, so that one is compared with all at a time; places left over hold empty boxes.
     struct Leaf {
-        std::array<std::array<float, leaf_size>, 3> low, high;
+        typedef float Bounds __attribute__((vector_size(leaf_size * sizeof(float))));
+        typedef std::int32_t Bits __attribute__((vector_size(leaf_size * sizeof(std::int32_t))));
+        std::array<Bounds, 3> low, high;
 
         Leaf();
         void set(std::size_t k, const FloatBox& box);
@@ -82,14 +85,10 @@ private:
         }
         /// Bit k: whether box k overlaps the other.
         unsigned overlaps(const FloatBox& other) const {
-            unsigned bits = 0;
-            for (std::size_t k = 0; k < leaf_size; ++k) {
-                const bool overlap = (low[0][k] <= other.high[0]) & (low[1][k] <= other.high[1]) &
-                                     (low[2][k] <= other.high[2]) & (other.low[0] <= high[0][k]) &
-                                     (other.low[1] <= high[1][k]) & (other.low[2] <= high[2][k]);
-                bits |= overlap ? 1U << k : 0U;
-            }
-            return bits;
+            Bits bits = {1, 2, 4, 8};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                bits &= (low[axis] <= other.high[axis]) & (other.low[axis] <= high[axis]);
+            return static_cast<unsigned>(bits[0] | bits[1] | bits[2] | bits[3]);
         }
     };
 
