@@ -22,7 +22,8 @@ std::string free_mesh_place(const std::filesystem::path& name, const std::string
 SceneCopy copy_scene(const Scene& scene, const IsTaken& is_taken) {
     SceneCopy copy{scene, {}};
     const auto find = [&](const std::string& file) {
-        return std::find_if(copy.meshes.begin(), copy.meshes.end(), [&](const auto& mesh) { return mesh.file == file; });
+        return std::find_if(copy.meshes.begin(), copy.meshes.end(),
+                            [&](const auto& mesh) { return mesh.file == file; });
     };
     const auto place_for = [&](const std::string& source) {
         const std::string bytes = read_bytes(scene.folder / source);
