@@ -69,6 +69,10 @@ TEST_F(Validators, VtkReadsTheCollection) {
     export_and_check("pvd", "a.pvd", "check_pvd.py");
 }
 
+TEST_F(Validators, BlenderPlaysThePointCache) {
+    export_and_check("pc2", "a.pc2", "check_pc2.py");
+}
+
 TEST_F(Validators, TrimeshReadsTheSequences) {
     export_and_check("obj", "objects", "check_sequence.py");
     export_and_check("ply", "surfaces", "check_sequence.py");

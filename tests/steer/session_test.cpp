@@ -117,6 +117,12 @@ TEST(Session, GivesBackWhatWasBeforeEveryChange) {
     followed.step(2);
     EXPECT_EQ(followed.positions(), after);
 
+    // What was undone is gone once something else has been done.
+    followed.session.undo();
+    EXPECT_TRUE(followed.session.can_redo());
+    followed.set("/contact/friction", 0.2);
+    EXPECT_FALSE(followed.session.redo());
+
     // From what was brought back the run goes on as it went.
     steered.session.undo();
     steered.step(3);
@@ -209,7 +215,7 @@ TEST(Replay, IsResumedToTheSameBits) {
     const RunResult whole = replay(scene, log, {}, witness, context);
     EXPECT_EQ(whole.report.status, RunStatus::not_converged); // it ends before equilibrium
     EXPECT_EQ(whole.positions, steered.positions());
-    for (int checkpoints : {1, 3, 6, 11, 14}) {
+    for (int checkpoints : {1, 3, 6, 11, 12, 13, 14}) { // the twelfth is refined
         Context stopped;
         Interrupter interrupter(stopped, checkpoints);
         EXPECT_EQ(replay(scene, log, {}, interrupter, stopped).report.status, RunStatus::interrupted);

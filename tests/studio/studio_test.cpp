@@ -83,6 +83,8 @@ TEST(Studio, GoesOnWhereAKilledOneStopped) {
         RunningStudio running(small_scene_text, &session);
         WatchingPage page(running);
         ASSERT_TRUE(page.comes_to("idle"));
+        page.send({{"type", "frame"}, {"index", 99}});
+        ASSERT_FALSE(page.next("error").is_null()) << "there is no such frame";
         EXPECT_FALSE(std::filesystem::exists(session / "last-session.json")) << "nothing has been done yet";
         page.send({{"type", "step"}});
         page.send({{"type", "set"}, {"edits", {{{"set", "/gravity"}, {"value", {0, -3, 1}}}}}});
@@ -114,6 +116,17 @@ TEST(Studio, GoesOnWhereAKilledOneStopped) {
     EXPECT_EQ(last_bytes, read_text(session / mine));
     page.send({{"type", "save"}, {"name", "last-session"}});
     EXPECT_FALSE(page.next("error").is_null()) << "it would be written over";
+}
+
+TEST(Studio, OpensNoSceneThatNamesFilesOutsideOfItsFolder) {
+    RunningStudio running(nullptr);
+    WatchingPage page(running);
+    std::filesystem::create_directories(running.folder);
+    write_text(running.folder / "other.json", R"({"plisse": 1, "bodies": [{"mesh": "../other.obj"}]})");
+    page.send({{"type", "open"}, {"file", "other.json"}});
+    EXPECT_NE(page.next("error").at("message").get<std::string>().find("outside"), std::string::npos);
+    page.send({{"type", "open"}, {"file", "absent.json"}});
+    EXPECT_NE(page.next("error").at("message").get<std::string>().find("absent.json"), std::string::npos);
 }
 
 TEST(Studio, AMeshOfTheSameNameReplacesNone) {
